@@ -237,6 +237,7 @@ def law(
     described = json_of(_dissipation(restitution, damping, dissipation), "dissipation")
     kind = named(kind)
     _known(kind, _LAWS, "law", "kind")
+    _numbers({**parameters, "onset_floor": onset_floor})
     if any(name in parameters for name in _GEOMETRY) and kind not in _NOT_OF_CYLINDERS:
         finite = json.loads(json_of(parameters, "law"))
         arrangement, measures, length, modulus = _cylinders(finite)
@@ -271,6 +272,13 @@ def _known(name: Any, known: Mapping[Any, object], what: str, path: str) -> None
     near = get_close_matches(str(name), known, 1)
     hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(known)}"
     raise ParameterError(f"no {what} is called {name!r}; {hint}", path, hint)
+
+
+def _numbers(given: Mapping[str, Any]) -> None:
+    """Refuse what is no number."""
+    for name, value in json.loads(json_of(given, "law")).items():
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise ParameterError(f"{name} = {value!r}, must be a number", name, "must be a number")
 
 
 def _complete(kind: str, given: Iterable[str], needed: tuple[str, ...]) -> None:

@@ -48,6 +48,8 @@ class Problem(NamedTuple):
     """The mistake, with the offending value."""
     hint: str | None
     """The values that are allowed, or something to try."""
+    column: int | None = None
+    """Column of the line, counted from 1; None where the line is meant as a whole."""
 
 
 class ChaindriveError(Exception):
@@ -93,7 +95,7 @@ class SceneError(ChaindriveError, ValueError):
     def __init__(
         self,
         message: str,
-        problems: Iterable[tuple[str, int | None, str, str | None]] = (),
+        problems: Iterable[tuple[str, int | None, str, str | None, int | None]] = (),
         source: str | None = None,
     ) -> None:
         self.problems = [Problem(*problem) for problem in problems]

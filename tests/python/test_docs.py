@@ -16,7 +16,7 @@ FILES = [
     file for file in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))] if file.exists()
 ]
 # Packages that nothing but the blocks of a page take.
-TAKES = {"sweep-recipes.md": ["SALib", "optuna", "scipy"]}
+TAKES = {"sweep-recipes.md": ["SALib", "optuna", "scipy"], "command-line.md": ["pyarrow"]}
 BLOCK = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 TOML = re.compile(r"^```toml\n(.*?)^```", re.MULTILINE | re.DOTALL)
 MODULES = [

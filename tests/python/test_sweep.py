@@ -139,7 +139,7 @@ def test_the_command_has_the_options_of_the_function(capfd):
     command = {option.replace("-", "_") for option in listed}
     function = set(inspect.signature(cd.sweep).parameters)
     assert function - command == {"drive", "executor", "progress"}
-    assert command - function == {"set", "take_over", "quiet", "help"}
+    assert command - function == {"set", "take_over", "quiet", "help", "json", "format"}
 
 
 def test_dimensions_are_named_and_have_units(built_in):

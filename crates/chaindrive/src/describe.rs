@@ -20,6 +20,7 @@ use chaindrive_mechanics::{
     Adjust, Assembled, Capacity, Chain, Clash, Drive, Fight, Fitting, Flow, GuideSupport, Layout,
     Observation, PlacedChain, Rotation, Statics, Unrated,
 };
+use schemars::JsonSchema;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
@@ -36,10 +37,11 @@ pub use tolerance::ToleranceFacts;
 use crate::{Run, SimulationError, rating};
 
 /// A drive and a run, described.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Description {
     /// The chains; in JSON `chain` and its `closing` where there is one, as scenes have it.
     #[serde(flatten, serialize_with = "as_in_scenes")]
+    #[schemars(with = "AsInScenes")]
     pub chains: Vec<ChainFacts>,
     /// The bodies of the routes, in path order, chain by chain.
     pub stops: Vec<StopFacts>,
@@ -73,7 +75,7 @@ pub struct Description {
 }
 
 /// A chain in numbers.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ChainFacts {
     /// Its name; none where there is one chain only.
     pub name: Option<String>,
@@ -104,7 +106,7 @@ pub struct ChainFacts {
 }
 
 /// A shaft and all that turns with it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ShaftFacts {
     /// Its name.
     pub name: String,
@@ -119,7 +121,7 @@ pub struct ShaftFacts {
 }
 
 /// How the chain was fitted.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Closing {
     /// Strain of the links as laid \[–\].
     pub strain: f64,
@@ -135,7 +137,7 @@ pub struct Closing {
 }
 
 /// Power that a chain is rated for where the run starts.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct RatedPower {
     /// The smallest sprocket that something drives or loads.
     pub sprocket: String,
@@ -164,7 +166,7 @@ pub fn counted(number: usize, thing: &str) -> String {
 }
 
 /// A static state on the way to the start.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct StaticStage {
     /// The load applied last: pretension, gravity or load.
     pub stage: &'static str,
@@ -177,7 +179,7 @@ pub struct StaticStage {
 }
 
 /// Moving parts and contacts.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Model {
     /// Degrees of freedom that move.
     pub degrees_of_freedom: usize,
@@ -202,7 +204,7 @@ pub struct Model {
 }
 
 /// How fast things happen at the start.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct TimeScales {
     /// 1/ω of the stiffest mode \[s\].
     pub stiffest: f64,
@@ -314,6 +316,21 @@ impl Description {
         self.cost.unless_chosen_for = accuracy;
         self
     }
+}
+
+/// One `chain`, or several `chains`: the form of [`as_in_scenes`], for the schema.
+#[derive(JsonSchema)]
+#[expect(dead_code, reason = "only its schema is asked for")]
+struct AsInScenes {
+    /// The chain, where there is one only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chain: Option<ChainFacts>,
+    /// How it was fitted; absent when it does not run around sprockets.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    closing: Option<Closing>,
+    /// The chains, where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chains: Option<Vec<ChainFacts>>,
 }
 
 /// One `chain`, or several `chains`.

@@ -10,6 +10,7 @@ use chaindrive_geometry::{
     Vector, Wheel, WheelKind, close_nearest,
 };
 use chaindrive_mechanics::{Adjust, AssemblyError, Clash, Drive, Layout, PlacedChain, Stop};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Elongations by wear at which the travel of an adjusted body is given \[–\]: timing chains are replaced at 0.5 to 1 %, others at 2
@@ -23,7 +24,7 @@ const STEP: f64 = 0.1;
 const REACH: f64 = 20.0;
 
 /// A closed chain, laid out.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ChainLayout {
     /// Its name; none where there is one only.
     pub chain: Option<String>,
@@ -54,7 +55,7 @@ pub struct ChainLayout {
 }
 
 /// How many links a route takes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Counts {
     /// By the exact polygon \[–\].
     pub pitches: f64,
@@ -71,7 +72,7 @@ pub struct Counts {
 }
 
 /// A sprocket or guide on the route.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct StopLayout {
     /// Its name.
     pub name: String,
@@ -92,7 +93,7 @@ pub struct StopLayout {
 }
 
 /// A straight span.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SpanLayout {
     /// Name, "from-to".
     pub name: String,
@@ -109,7 +110,7 @@ pub struct SpanLayout {
 }
 
 /// The face of a guide: an arc, as a scene says it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FaceLayout {
     /// Name of the guide.
     pub name: String,
@@ -124,7 +125,7 @@ pub struct FaceLayout {
 }
 
 /// Where a body would have to stand for a number of links to close exactly.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Fit {
     /// Number of links.
     pub links: u32,
@@ -141,7 +142,7 @@ pub struct Fit {
 }
 
 /// Where the adjusted body stands when the links are worn.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Worn {
     /// Elongation of the chain \[–\].
     pub elongation: f64,

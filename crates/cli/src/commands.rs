@@ -13,5 +13,6 @@ pub(crate) mod report;
 pub(crate) mod resume;
 pub(crate) mod run;
 pub(crate) mod scenes;
+pub(crate) mod schemas;
 pub(crate) mod shell;
 pub(crate) mod sweep;

@@ -114,7 +114,7 @@ impl CsvWriter {
 }
 
 /// The shortest digits that read back to the same number.
-fn digits(value: f64) -> String {
+pub(crate) fn digits(value: f64) -> String {
     format!("{value:?}")
 }
 
@@ -266,20 +266,31 @@ impl Drop for Table {
     }
 }
 
-fn heading(simulation: &Simulation, channels: &[Channel]) -> Vec<String> {
-    let mut cells = vec![named(TIME, Some("s"))];
+/// Names and units of the columns of a run.
+pub(crate) fn columns(
+    simulation: &Simulation,
+    channels: &[Channel],
+) -> Vec<(String, &'static str)> {
+    let mut columns = vec![(TIME.to_owned(), "s")];
     for channel in channels {
         let name = channel.name();
         let units = channel.units(simulation.system());
         match labels(channel.axis(), simulation.system()) {
-            None => cells.extend(units.into_iter().map(|unit| named(name, Some(unit)))),
+            None => columns.extend(units.into_iter().map(|unit| (name.to_owned(), unit))),
             Some(labels) => {
-                let cell = |(label, unit)| named(&format!("{name}[{label}]"), Some(unit));
-                cells.extend(labels.iter().zip(units).map(cell));
+                let entries = labels.iter().zip(units);
+                columns.extend(entries.map(|(label, unit)| (format!("{name}[{label}]"), unit)));
             }
         }
     }
-    cells
+    columns
+}
+
+fn heading(simulation: &Simulation, channels: &[Channel]) -> Vec<String> {
+    let columns = columns(simulation, channels).into_iter();
+    columns
+        .map(|(name, unit)| named(&name, Some(unit)))
+        .collect()
 }
 
 /// The heading of a column.

@@ -1,6 +1,7 @@
 //! How a command ends when it does not end well.
 
 use std::convert::Infallible;
+use std::io::ErrorKind;
 
 use chaindrive::record::{ReadError, ResumeError, WriteError};
 use chaindrive::scene::SceneError;
@@ -48,7 +49,7 @@ pub(crate) enum Failure {
     Variants { failed: usize, variants: usize },
 
     /// The result could not be written.
-    #[error(transparent)]
+    #[error("{0}{remedy}", remedy = remedy_of(.0))]
     Write(#[from] WriteError),
 
     /// There is nothing to go on with.
@@ -60,7 +61,7 @@ pub(crate) enum Failure {
     Read(#[from] ReadError),
 
     /// The result could not be written.
-    #[error("{path}: {source}")]
+    #[error("{path}: {source}{}", remedy(.source))]
     File {
         path: String,
         source: std::io::Error,
@@ -86,6 +87,22 @@ pub(crate) enum Failure {
 impl From<Infallible> for Failure {
     fn from(never: Infallible) -> Self {
         match never {}
+    }
+}
+
+/// What to do where a file cannot be written.
+fn remedy(error: &std::io::Error) -> &'static str {
+    match error.kind() {
+        ErrorKind::NotFound => "; make the folder first, or choose another",
+        ErrorKind::PermissionDenied => "; choose a place where you may write",
+        _ => "",
+    }
+}
+
+fn remedy_of(error: &WriteError) -> &'static str {
+    match error {
+        WriteError::Io { source, .. } => remedy(source),
+        _ => "",
     }
 }
 
@@ -139,6 +156,29 @@ impl Failure {
             },
             RequestError::Scene(error) => error.into(),
             error => Self::Argument(error.to_string()),
+        }
+    }
+
+    /// File, scene or result that it is about, where it is known.
+    pub(crate) fn place(&self) -> Option<String> {
+        match self {
+            Self::Scene(error) | Self::Sweep(SweepError::Scene(error)) => {
+                Some(error.source_name.clone())
+            }
+            Self::Start { scene, .. }
+            | Self::Simulation { scene, .. }
+            | Self::Distrusted { scene } => Some(scene.clone()),
+            Self::File { path, .. } | Self::Taken { path, .. } => Some(path.clone()),
+            Self::Write(WriteError::Io { path, .. }) => Some(path.display().to_string()),
+            _ => None,
+        }
+    }
+
+    /// The mistakes in a scene, if it is about some.
+    pub(crate) fn scene_error(&self) -> Option<&SceneError> {
+        match self {
+            Self::Scene(error) | Self::Sweep(SweepError::Scene(error)) => Some(error),
+            _ => None,
         }
     }
 

@@ -11,11 +11,14 @@
 //! | 4 | `--strict` was asked for, and the verdict on the result is `distrusted` |
 //! | 130 | interrupted; a result keeps the samples or variants so far and says so |
 
+mod answer;
 mod commands;
+mod complaint;
 mod csv;
 mod failure;
 mod progress;
 mod request;
+mod stream;
 mod suggested;
 mod terminal;
 
@@ -24,11 +27,12 @@ use std::path::PathBuf;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use terminal::say;
+use complaint::{Complaint, Trouble};
+use terminal::{say, tell};
 
 use commands::{
     bench, check, describe, design, draw, fmu, lists, replay, report, resume, run as run_command,
-    scenes, shell, sweep,
+    scenes, schemas, shell, sweep,
 };
 
 /// Exit code of a run that was stopped by Ctrl-C.
@@ -79,10 +83,8 @@ enum Verb {
     Resolve(scenes::Resolve),
     Diff(scenes::Diff),
     Scenes(lists::Scenes),
-    /// Prints the JSON Schema of scene files.
-    Schema,
-    /// Lists what a run can record.
-    Channels,
+    Schema(schemas::Arguments),
+    Channels(lists::Channels),
     Catalogue(lists::Catalogue),
     Completion(shell::Completion),
     Man(shell::Man),
@@ -130,8 +132,14 @@ pub fn run<A>(arguments: impl IntoIterator<Item = A>, interrupted: &dyn Fn() -> 
 where
     A: Into<OsString> + Clone,
 {
+    let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    let json = arguments.iter().any(|argument| argument == "--json");
     let command = match Command::try_parse_from(arguments) {
         Ok(command) => command,
+        Err(error) if json && error.use_stderr() => {
+            let code = u8::try_from(error.exit_code()).unwrap_or(failure::BAD_INPUT);
+            return complained(Trouble::of_arguments(&error, code));
+        }
         Err(error) => {
             // Help goes to stdout, complaints to stderr; a closed pipe is nobody's problem.
             let _ = error.print();
@@ -159,19 +167,28 @@ where
         Verb::Resolve(arguments) => scenes::resolve(arguments, interrupted),
         Verb::Diff(arguments) => scenes::diff(arguments, interrupted),
         Verb::Scenes(arguments) => lists::scenes(arguments),
-        Verb::Schema => lists::schema(),
-        Verb::Channels => lists::channels(),
+        Verb::Schema(arguments) => schemas::schema(arguments),
+        Verb::Channels(arguments) => lists::channels(arguments),
         Verb::Catalogue(arguments) => lists::catalogue(arguments),
         Verb::Completion(arguments) => shell::completion(arguments, Command::command()),
         Verb::Man(arguments) => shell::man(arguments, Command::command()),
     };
     match done {
         Ok(()) => 0,
+        Err(failure) if json => complained(Trouble::of(&failure)),
         Err(failure) => told(&failure),
     }
 }
 
+/// Writes a failure as JSON.
+fn complained(error: Trouble) -> u8 {
+    let code = error.exit_code;
+    let text = serde_json::to_string_pretty(&Complaint { error });
+    say(answer::spelled(&text.unwrap_or_default()));
+    code
+}
+
 fn told(failure: &failure::Failure) -> u8 {
-    say(failure);
+    tell(failure);
     failure.exit_code()
 }

@@ -11,6 +11,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 const PARTS: u64 = 1000;
 /// Wall time between two looks.
 const EVERY: Duration = Duration::from_millis(100);
+/// Wall time without a sample after which the bar says what goes on instead.
+const PAUSE: Duration = Duration::from_secs(1);
 
 /// A bar with time left and real-time factor.
 #[derive(Debug)]
@@ -22,6 +24,8 @@ pub(crate) struct Progress {
     from: Option<[f64; 2]>,
     /// Share done, and the wall time when it was reached \[s\].
     reached: [f64; 2],
+    /// When samples ceased to come: before the first one, or behind the last.
+    resting: Option<Instant>,
 }
 
 /// Does something whose end nobody knows, and shows for how long: `work` takes what it asks now and then whether to stop.
@@ -53,12 +57,34 @@ impl Progress {
             shown: now,
             from: None,
             reached: [0.0; 2],
+            resting: None,
         }
     }
 
     /// Shows for how long something goes on.
     fn wait(&mut self, what: &str) {
         self.tell(0.0, |elapsed, _| format!("{what}, {}", clock(elapsed)));
+    }
+
+    /// Shows for how long a run gives no samples: it assembles and chooses a method before them, and estimates its error behind.
+    pub(crate) fn rest(&mut self) {
+        if self.resting.is_none() && self.shown.elapsed() < PAUSE {
+            return;
+        }
+        let since = *self.resting.get_or_insert_with(Instant::now);
+        let share = if self.from.is_some() {
+            self.reached[0]
+        } else {
+            0.0
+        };
+        let what = if share < 1.0 {
+            "preparing"
+        } else {
+            "estimating the error"
+        };
+        self.put(share, |_, _| {
+            format!("{what}, {}", clock(since.elapsed().as_secs_f64()))
+        });
     }
 
     /// Shows how far the run is.
@@ -93,6 +119,11 @@ impl Progress {
 
     /// Puts the bar at a share done, with a message made of the time elapsed and the time left.
     fn tell(&mut self, done: f64, message: impl FnOnce(f64, &str) -> String) {
+        self.resting = None;
+        self.put(done, message);
+    }
+
+    fn put(&mut self, done: f64, message: impl FnOnce(f64, &str) -> String) {
         let Some(bar) = &self.bar else { return };
         if self.shown.elapsed() < EVERY {
             return;
@@ -164,6 +195,7 @@ mod tests {
             shown: then,
             from: None,
             reached: [0.0; 2],
+            resting: None,
         }
     }
 
@@ -208,6 +240,22 @@ mod tests {
         let mut progress = hidden(75);
         progress.wait("assembling");
         assert_eq!(message(&progress), "assembling, 1 min 15 s");
+    }
+
+    /// Assembly, choice and estimate take longer than the run itself at times.
+    #[test]
+    fn what_has_no_samples_tells_what_goes_on() {
+        let mut progress = hidden(5);
+        progress.rest();
+        assert_eq!(message(&progress), "preparing, 0 s");
+        progress.from = Some([0.0, 0.0]);
+        progress.shown -= EVERY;
+        progress.tell(1.0, |_, _| "the end".to_owned());
+        progress.rest();
+        assert_eq!(message(&progress), "the end", "only after a pause");
+        progress.shown -= PAUSE;
+        progress.rest();
+        assert_eq!(message(&progress), "estimating the error, 0 s");
     }
 
     #[test]

@@ -28,16 +28,16 @@ pub(crate) struct SceneArguments {
 #[derive(Debug, Default, Args)]
 pub(crate) struct RunArguments {
     /// End of the run, such as "1 s" or 1
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     until: Option<String>,
 
     /// Time simulated before t = 0: seconds, turns of a sprocket such as "5 turns of camshaft", or auto, until the
     /// tensions are steady
-    #[arg(long, value_name = "TIME|TURNS|auto")]
+    #[arg(long, value_name = "TIME|TURNS|auto", allow_hyphen_values = true)]
     run_in: Option<String>,
 
     /// Time between two samples, such as "0.1 ms"
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     every: Option<String>,
 
     /// Method of time stepping; implicit-damping and generalized-alpha are for rigid links and free rollers
@@ -45,7 +45,7 @@ pub(crate) struct RunArguments {
     method: Option<String>,
 
     /// Step of a method with a fixed step, longest step of an adaptive one
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     step: Option<String>,
 
     /// Relative tolerance of an adaptive method
@@ -74,6 +74,22 @@ pub(crate) struct RunArguments {
     events: Vec<String>,
 }
 
+/// Reads a number of things, at least one.
+pub(crate) fn some<T: TryFrom<u64>>(text: &str) -> Result<T, String> {
+    counted(text, 1)
+}
+
+/// Reads a number of things, perhaps none.
+pub(crate) fn any<T: TryFrom<u64>>(text: &str) -> Result<T, String> {
+    counted(text, 0)
+}
+
+fn counted<T: TryFrom<u64>>(text: &str, least: u64) -> Result<T, String> {
+    let number = text.parse().ok().filter(|number| *number >= least);
+    let number = number.and_then(|number| T::try_from(number).ok());
+    number.ok_or_else(|| format!("must be a whole number, {least} or more"))
+}
+
 /// Channels as shells complete them.
 pub(crate) fn channels() -> Suggested {
     let names = Channel::ALL.iter().map(|channel| channel.name());
@@ -96,8 +112,8 @@ pub(crate) fn load(name: &str, interrupted: &dyn Fn() -> bool) -> Result<Scene, 
     let path = Path::new(name);
     let preset = presets().iter().any(|(known, _)| *known == name);
     let looks_like_a_file = path.extension().is_some() || path.components().count() > 1;
-    // Whatever exists that is no folder is to be read: pipes and devices too.
-    if (path.exists() && !path.is_dir()) || (looks_like_a_file && !preset) {
+    // Whatever exists is to be read, pipes and devices too, but for a folder that is called like an embedded scene.
+    if (path.exists() && !path.is_dir()) || ((path.exists() || looks_like_a_file) && !preset) {
         let path = path.to_owned();
         read(Box::new(|| Scene::read(path)))
     } else {
@@ -153,13 +169,12 @@ impl SceneArguments {
     }
 }
 
-/// The mistake in a value that an option gave: it stands in no line of the scene.
-fn by_option(mut error: SceneError, option: &str) -> SceneError {
-    option.clone_into(&mut error.source_name);
-    for problem in &mut error.problems {
-        problem.line = None;
+/// The mistake in a value that an option gave.
+fn by_option(error: SceneError, option: &str) -> SceneError {
+    SceneError {
+        source_name: option.to_owned(),
+        ..error.nowhere()
     }
-    error
 }
 
 impl RunArguments {

@@ -19,6 +19,11 @@ pub(crate) fn print(text: impl Display) -> Result<(), Failure> {
     }
 }
 
+/// Tells of a failure on stderr, with an excerpt of the scene where there is one.
+pub(crate) fn tell(failure: &Failure) {
+    say(format_args!("{failure:#}"));
+}
+
 /// Writes a text to stderr and ends the line.
 pub(crate) fn say(text: impl Display) {
     eprintln!("{}", plain(&text.to_string()));

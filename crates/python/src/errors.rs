@@ -43,11 +43,16 @@ impl<T, E: IntoException> OrRaise<T> for Result<T, E> {
 
 impl IntoException for SceneError {
     fn exception(self) -> PyErr {
-        let message = self.to_string();
+        let message = format!("{self:#}");
         let problems: Vec<_> = self
             .problems
             .into_iter()
-            .map(|problem| (problem.path, problem.line, problem.message, problem.hint))
+            .map(|problem| {
+                let line = problem.place.map(|place| place.line);
+                let column = problem.place.and_then(|place| place.columns);
+                let column = column.map(|[first, _]| first);
+                (problem.path, line, problem.message, problem.hint, column)
+            })
             .collect();
         python::SceneError::new_err((message, problems, self.source_name))
     }

@@ -130,5 +130,16 @@ impl Law {
 pub(crate) fn refused(error: &serde_json::Error, path: &str, allowed: &str) -> PyErr {
     let message = error.to_string();
     let message = message.split(" at line").next().unwrap_or_default();
-    parameter(message.to_owned(), path, allowed)
+    let told = match message
+        .strip_prefix("invalid type: ")
+        .and_then(|rest| rest.split_once(", expected "))
+    {
+        Some((found, "f64")) => format!("{path}: found {found}, needed is a number"),
+        Some((found, needed)) => format!("{path}: found {found}, needed is {needed}"),
+        None => message
+            .replace("missing field", "missing is")
+            .replace("unknown field", "unknown is")
+            .replace("unknown variant", "unknown is"),
+    };
+    parameter(told, path, allowed)
 }

@@ -3,12 +3,13 @@
 use std::fmt;
 
 use chaindrive_mechanics::Parts;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::verdict::{ALIGNED, ALIGNED_FAST};
 
 /// A span out of line.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct AlignmentFacts {
     /// Its name.
     pub span: String,

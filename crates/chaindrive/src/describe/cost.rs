@@ -4,13 +4,14 @@ use std::time::{Duration, Instant};
 
 use chaindrive_integrate::SecondOrderSystem;
 use chaindrive_mechanics::Assembled;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::run_in::bounds;
 use crate::{Run, Simulation, SimulationError};
 
 /// Method, steps and run time.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Cost {
     /// Name of the method.
     pub method: &'static str,

@@ -4,12 +4,13 @@ use std::f64::consts::TAU;
 use std::fmt;
 
 use chaindrive_mechanics::{Assembled, FreeTrain};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::figure::{Measure, figure};
 
 /// Shafts that chains, gears and couplings join and no motion turns, at the start.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct FreeTrainFacts {
     /// Names of its shafts, or of the only sprockets on them.
     pub shafts: Vec<String>,

@@ -2,11 +2,12 @@
 
 use chaindrive_contact::Friction;
 use chaindrive_mechanics::{Chain, Clearance, Drive, FreeRoller, Surface};
+use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
 
 /// Links, joints and rollers of a chain.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct LinkFacts {
     /// Model, as scenes name it.
     pub model: &'static str,
@@ -69,7 +70,7 @@ impl LinkFacts {
 }
 
 /// The law of a kind of contact.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ContactFacts {
     /// The parts that touch: teeth, guides, joints or rollers.
     pub pair: &'static str,

@@ -3,10 +3,11 @@
 use std::fmt;
 
 use chaindrive_mechanics::{OilSupply, Parts};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Properties of the oil at its temperature.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct OilFacts {
     /// Temperature \[K\].
     pub temperature: f64,

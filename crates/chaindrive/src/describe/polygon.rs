@@ -2,13 +2,14 @@
 
 use chaindrive_geometry::{Point, PolygonAction, PressureAngles, mesh_frequency};
 use chaindrive_mechanics::{Drive, Layout, Observation, PlacedChain, Stop};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A strand between two neighbouring sprockets, were it tight and the only one.
 ///
 /// The wheel that the chain runs onto pulls: it is the driver. The figures follow from teeth,
 /// pitch and centre distance alone.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PolygonPair {
     /// The wheel the strand runs onto.
     pub driver: String,

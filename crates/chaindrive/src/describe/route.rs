@@ -5,12 +5,13 @@ use std::ops::Range;
 
 use chaindrive_geometry::{Point, Route, Wheel};
 use chaindrive_mechanics::{Assembled, Drive, Fitting, Layout, Observation, PlacedChain, Stop};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::at_start;
 
 /// A body of the route.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct StopFacts {
     /// Name of the chain; none where there is one only.
     pub chain: Option<String>,
@@ -26,7 +27,7 @@ pub struct StopFacts {
 }
 
 /// A span between two stops, at rest under all loads.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SpanAtRest {
     /// Name of the chain; none where there is one only.
     pub chain: Option<String>,

@@ -3,12 +3,13 @@
 use std::fmt;
 
 use chaindrive_mechanics::{Parts, dry_blow};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::figure::{Measure, figure};
 
 /// Parts behind the teeth of sprockets that are alike in them.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct StackFacts {
     /// Names of the sprockets.
     pub sprockets: Vec<String>,
@@ -27,7 +28,7 @@ pub struct StackFacts {
 }
 
 /// A part behind the teeth.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct StackTermFacts {
     /// Its name.
     pub part: &'static str,

@@ -3,10 +3,11 @@
 use std::fmt;
 
 use chaindrive_mechanics::Parts;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Errors of a sprocket.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ToleranceFacts {
     /// Its name.
     pub sprocket: String,

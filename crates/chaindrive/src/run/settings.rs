@@ -157,9 +157,10 @@ impl Given {
         if let Self::Number(time) = self {
             return Ok(*time);
         }
-        let read = self.put(scene, "run.every").map_err(|mut error| {
+        let read = self.put(scene, "run.every").map_err(|error| {
+            let mut error = error.nowhere();
             for problem in &mut error.problems {
-                (problem.path, problem.line) = (name.to_owned(), None);
+                name.clone_into(&mut problem.path);
             }
             error
         })?;

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
+use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::resolved::{Resolved, leaf};
@@ -9,7 +11,7 @@ use super::validate::below;
 use super::{Scene, SceneError};
 
 /// A value that two scenes do not have in common.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Difference {
     /// Place in the scenes, with entries of lists by name where they have one.
     pub path: String,

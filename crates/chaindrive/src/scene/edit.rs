@@ -69,26 +69,20 @@ impl Scene {
 
     /// This scene with another text, which differs at the end of a path.
     ///
-    /// Lines stay those of the text that was read, which is the one that a user has before his eyes; what has been put in its place has
-    /// none.
+    /// Places stay those of the text that was read, which is the one that a user has before his eyes; what has been put there has none.
     fn edited(&self, text: &str, keys: &[Key]) -> Result<Self, SceneError> {
-        let tree = Node::parse(text).map_err(|problem| {
-            let problem = Problem {
-                line: None,
-                ..problem
-            };
-            SceneError::new(&self.name, vec![problem])
-        });
+        let tree = Node::parse(text)
+            .map_err(|problem| SceneError::new(&self.name, vec![problem]).nowhere());
         let mut tree = tree?;
-        tree.take_lines(Some(&self.tree));
+        tree.take_places(Some(&self.tree));
         let changed = keys.iter().try_fold(&mut tree, |node, key| match key {
             Key::Index(index) => node.entry_mut(*index),
             Key::Name(name) => node.get_mut(name),
         });
         if let Some(changed) = changed {
-            changed.take_lines(None);
+            changed.take_places(None);
         }
-        Self::from_tree(tree, text, &self.name)
+        Self::from_tree(tree, text, &self.source())
     }
 
     fn put(&self, path: &str, json: &Json, toml: Toml) -> Result<Self, SceneError> {
@@ -96,23 +90,23 @@ impl Scene {
         let text = if is_json(&self.text) {
             let mut root: Json = serde_json::from_str(&self.text).unwrap_or_default();
             put_json(&mut root, &keys, json)
-                .ok_or_else(|| self.refuse(path, "nothing can be put here", None))?;
+                .ok_or_else(|| self.refuse(path, "nothing can be put here", Some(PUT.into())))?;
             format!("{root:#}\n")
         } else {
             let text = self.text.strip_prefix('\u{feff}').unwrap_or(&self.text);
             let mut document: DocumentMut = text.parse().unwrap_or_default();
             put_toml(document.as_item_mut(), &keys, toml)
-                .ok_or_else(|| self.refuse(path, "nothing can be put here", None))?;
+                .ok_or_else(|| self.refuse(path, "nothing can be put here", Some(PUT.into())))?;
             document.to_string()
         };
         self.edited(&text, &keys)
     }
 
     fn refuse(&self, path: &str, message: &str, hint: Option<String>) -> SceneError {
-        let (path, line) = self.tree.locate(path);
-        let mut problem = Problem::new(&path, line, message);
+        let (path, place) = self.tree.locate(path);
+        let mut problem = Problem::new(&path, place, message);
         problem.hint = hint;
-        SceneError::new(&self.name, vec![problem])
+        SceneError::new(&self.name, vec![problem]).within(&self.read)
     }
 
     /// The steps of a path, with names in lists turned into indices.
@@ -144,6 +138,9 @@ impl Scene {
         Ok(keys)
     }
 }
+
+/// Remedy for a path that goes on behind a value.
+const PUT: &str = "give the path of a table or a value, such as `chain.links`";
 
 enum Key {
     Name(String),

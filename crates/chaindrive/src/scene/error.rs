@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::place::Place;
 use crate::plain;
 
 /// One thing to mend in a scene.
@@ -9,21 +10,24 @@ use crate::plain;
 pub struct Problem {
     /// Place in the scene, such as `sprockets[1].teeth`; empty for the text as a whole.
     pub path: String,
-    /// Line of the text, counted from 1; absent in JSON, which carries no lines.
-    pub line: Option<usize>,
+    /// Place in the text; absent in JSON, whose values carry none, and where an option or argument gave the value.
+    pub place: Option<Place>,
     /// The mistake, with the offending value.
     pub message: String,
     /// The values that are allowed, or something to try.
     pub hint: Option<String>,
+    /// The line of the text with a caret under the place, two lines; absent without a place.
+    pub excerpt: Option<Box<str>>,
 }
 
 impl Problem {
-    pub(crate) fn new(path: &str, line: Option<usize>, message: impl Into<String>) -> Self {
+    pub(crate) fn new(path: &str, place: Option<Place>, message: impl Into<String>) -> Self {
         Self {
             path: plain(path).into_owned(),
-            line,
+            place,
             message: plain(&message.into()).into_owned(),
             hint: None,
+            excerpt: None,
         }
     }
 
@@ -33,18 +37,26 @@ impl Problem {
     }
 }
 
-/// `12: sprockets[1].teeth: …; …`, without the name of the source.
+/// `12:9: sprockets[1].teeth: …; …`, without the name of the source; in the alternate form, `{:#}`, with the excerpt below.
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some(line) = self.line {
-            write!(f, "{line}: ")?;
+        match self.place {
+            Some(Place {
+                line,
+                columns: Some([first, _]),
+            }) => write!(f, "{line}:{first}: ")?,
+            Some(Place { line, .. }) => write!(f, "{line}: ")?,
+            None => {}
         }
         if !self.path.is_empty() {
             write!(f, "{}: ", self.path)?;
         }
         f.write_str(&self.message)?;
-        match &self.hint {
-            Some(hint) => write!(f, "; {hint}"),
+        if let Some(hint) = &self.hint {
+            write!(f, "; {hint}")?;
+        }
+        match self.excerpt.as_ref().filter(|_| f.alternate()) {
+            Some(excerpt) => write!(f, "\n{excerpt}"),
             None => Ok(()),
         }
     }
@@ -110,22 +122,43 @@ pub struct SceneError {
 
 impl SceneError {
     pub(crate) fn new(source_name: &str, mut problems: Vec<Problem>) -> Self {
-        problems.sort_by_key(|problem| problem.line);
+        problems.sort_by_key(|problem| problem.place);
         Self {
             source_name: plain(source_name).into_owned(),
             problems,
             omitted: 0,
         }
     }
+
+    /// With the excerpts of the text that the places belong to.
+    pub(crate) fn within(mut self, text: &str) -> Self {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        for problem in &mut self.problems {
+            let excerpt = problem.place.and_then(|place| place.excerpt(text));
+            problem.excerpt = excerpt.map(String::into_boxed_str);
+        }
+        self
+    }
+
+    /// The same mistakes in a value that stands in no text, since an option or argument gave it.
+    #[must_use]
+    pub fn nowhere(mut self) -> Self {
+        for problem in &mut self.problems {
+            (problem.place, problem.excerpt) = (None, None);
+        }
+        self
+    }
 }
 
-/// One line a problem: `marine.toml:12: sprockets[1].teeth: 2, must be at least 5`.
+/// One line a problem: `marine.toml:12:9: sprockets[1].teeth: 2, must be at least 5`; in the alternate form, `{:#}`, with excerpts.
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, problem) in self.problems.iter().enumerate() {
             let end_of_last = if i == 0 { "" } else { "\n" };
-            let gap = if problem.line.is_some() { "" } else { " " };
-            write!(f, "{end_of_last}{}:{gap}{problem}", self.source_name)?;
+            let gap = if problem.place.is_some() { "" } else { " " };
+            write!(f, "{end_of_last}{}:{gap}", self.source_name)?;
+            // In the form that is asked for.
+            problem.fmt(f)?;
         }
         match self.omitted {
             0 => Ok(()),
@@ -143,15 +176,24 @@ mod tests {
 
     #[test]
     fn reads_like_a_compiler() {
+        let teeth = Place {
+            line: 2,
+            columns: Some([9, 10]),
+        };
         let error = SceneError::new(
             "marine.toml",
             vec![
                 Problem::new("chain", None, "missing"),
-                Problem::new("sprockets[1].teeth", Some(12), "2, must be at least 5").hint("try 6"),
+                Problem::new("sprockets[1].teeth", Some(teeth), "2, must be at least 5")
+                    .hint("try 6"),
             ],
         );
         let text = "marine.toml: chain: missing\n\
-                    marine.toml:12: sprockets[1].teeth: 2, must be at least 5; try 6";
+                    marine.toml:2:9: sprockets[1].teeth: 2, must be at least 5; try 6";
         assert_eq!(error.to_string(), text);
+        let error = error.within("[[sprockets]]\nteeth = 2\n");
+        assert_eq!(error.to_string(), text);
+        let excerpt = "\n  2 | teeth = 2\n    |         ^";
+        assert_eq!(format!("{error:#}"), format!("{text}{excerpt}"));
     }
 }

@@ -57,12 +57,13 @@ fn plain_brackets(schema: &mut Value) {
 fn for_editors(schema: &mut Value) {
     match schema {
         Value::Object(object) => {
+            // First, since keys stand there that mean something else in a schema.
+            require_unless(object);
             for value in object.values_mut() {
                 for_editors(value);
             }
             drop_null(object);
             allow_missing_kind(object);
-            require_unless(object);
             allow_bare_kinds(object);
             allow_common_unit(object);
         }

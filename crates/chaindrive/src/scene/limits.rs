@@ -10,6 +10,7 @@ use toml_parser::lexer::TokenKind;
 
 use super::error::Problem;
 use super::path::steps;
+use super::place::Place;
 
 /// Largest text \[bytes\] that is read: room for the tables of a measured drive, not for a film.
 const LARGEST: u64 = 16 << 20;
@@ -69,10 +70,10 @@ pub(crate) fn check_toml(text: &str) -> Result<(), Problem> {
             _ => {}
         }
         if brackets + dots > DEEPEST {
-            return Err(too_deep("", Some(line)));
+            return Err(too_deep("", Some(Place::line(line))));
         }
         if values > MOST_VALUES {
-            return Err(too_many(Some(line)));
+            return Err(too_many(Some(Place::line(line))));
         }
     }
     Ok(())
@@ -97,14 +98,14 @@ pub(crate) fn check_path(path: &str) -> Result<(), Problem> {
     Err(too_deep(&format!("{}…", begin.join(".")), None))
 }
 
-pub(crate) fn too_deep(path: &str, line: Option<usize>) -> Problem {
+pub(crate) fn too_deep(path: &str, place: Option<Place>) -> Problem {
     let message = format!("nested deeper than {DEEPEST} levels");
-    Problem::new(path, line, message).hint("no key of a scene lies that deep")
+    Problem::new(path, place, message).hint("no key of a scene lies that deep")
 }
 
-fn too_many(line: Option<usize>) -> Problem {
+fn too_many(place: Option<Place>) -> Problem {
     let message = format!("more than {MOST_VALUES} values");
-    Problem::new("", line, message).hint("give tables and measured profiles with fewer points")
+    Problem::new("", place, message).hint("give tables and measured profiles with fewer points")
 }
 
 #[cfg(test)]
@@ -123,7 +124,8 @@ mod tests {
         ] {
             let problem = check_toml(&text).unwrap_err();
             assert!(problem.to_string().contains("nested deeper"), "{text}");
-            assert_eq!(problem.line, Some(1 + text.matches('\n').count()));
+            let line = problem.place.map(|place| place.line);
+            assert_eq!(line, Some(1 + text.matches('\n').count()));
         }
         let flat = "x = [".to_owned() + &"[1.5, 2.5], ".repeat(1000) + "]\n# " + &deep(99);
         check_toml(&flat).unwrap();

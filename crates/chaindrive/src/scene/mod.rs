@@ -46,7 +46,7 @@
 //! assert_eq!(longer.drive()?.chains[0].chain.links(), 80);
 //!
 //! let error = Scene::from_text("[chain]\npitch = '12 rpm'", "bad.toml").unwrap_err();
-//! assert!(error.to_string().starts_with("bad.toml:2: chain.pitch: `12 rpm` is an angular speed"));
+//! assert!(error.to_string().starts_with("bad.toml:2:9: chain.pitch: `12 rpm` is an angular speed"));
 //! # Ok::<(), chaindrive::scene::SceneError>(())
 //! ```
 
@@ -58,8 +58,10 @@ mod edit;
 mod error;
 mod expected;
 mod format;
+mod keys;
 mod limits;
 mod path;
+mod place;
 mod presets;
 mod read;
 mod resolve;
@@ -70,6 +72,8 @@ mod suggest;
 mod tree;
 mod validate;
 
+use std::sync::Arc;
+
 use chaindrive_contact::Friction;
 use chaindrive_mechanics::Drive;
 use serde::Deserialize;
@@ -78,6 +82,7 @@ pub use datum::Datum;
 pub use diff::{Difference, diff};
 pub use error::{Problem, SceneError};
 pub use format::schema;
+pub use place::Place;
 pub use presets::presets;
 pub use schema::RunDefaults;
 
@@ -114,7 +119,7 @@ pub fn read_friction(text: &str) -> Result<Friction, SceneError> {
             problem.path = path.trim_start_matches('.').to_owned();
             problem
         };
-        SceneError::new("friction", problems.into_iter().map(below).collect())
+        SceneError::new("friction", problems.into_iter().map(below).collect()).nowhere()
     };
     // A friction stands in a contact.
     let text = format!("{{\"friction\": {text}}}");
@@ -135,11 +140,13 @@ pub fn read_friction(text: &str) -> Result<Friction, SceneError> {
 pub struct Scene {
     name: String,
     text: String,
+    /// The text that was read, before single values were changed: places in messages are its.
+    read: Arc<str>,
     tree: Node,
     content: SceneText,
 }
 
-/// Scenes of one name and text: all else follows, but for the lines of a text that was changed after it was read.
+/// Scenes of one name and text: all else follows, but for the places of a text that was changed after it was read.
 impl PartialEq for Scene {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name && self.text == other.text
@@ -152,8 +159,7 @@ impl Scene {
     /// # Errors
     /// Everything that is wrong with the text.
     pub fn from_text(text: &str, name: &str) -> Result<Self, SceneError> {
-        let tree = Node::parse(text).map_err(|problem| SceneError::new(name, vec![problem]))?;
-        Self::from_tree(tree, text, name)
+        Self::parsed(Node::parse, text, name)
     }
 
     /// Reads TOML.
@@ -161,9 +167,7 @@ impl Scene {
     /// # Errors
     /// Everything that is wrong with the text.
     pub fn from_toml(text: &str, name: &str) -> Result<Self, SceneError> {
-        let tree =
-            Node::parse_toml(text).map_err(|problem| SceneError::new(name, vec![problem]))?;
-        Self::from_tree(tree, text, name)
+        Self::parsed(Node::parse_toml, text, name)
     }
 
     /// Reads JSON.
@@ -171,16 +175,29 @@ impl Scene {
     /// # Errors
     /// Everything that is wrong with the text.
     pub fn from_json(text: &str, name: &str) -> Result<Self, SceneError> {
-        let tree =
-            Node::parse_json(text).map_err(|problem| SceneError::new(name, vec![problem]))?;
-        Self::from_tree(tree, text, name)
+        Self::parsed(Node::parse_json, text, name)
     }
 
-    fn from_tree(tree: Node, text: &str, name: &str) -> Result<Self, SceneError> {
-        validate::known_version(&tree).map_err(|problem| SceneError::new(name, vec![problem]))?;
+    fn parsed(
+        parse: fn(&str) -> Result<Node, Problem>,
+        text: &str,
+        name: &str,
+    ) -> Result<Self, SceneError> {
+        let source = Source {
+            name,
+            read: text.into(),
+        };
+        match parse(text) {
+            Ok(tree) => Self::from_tree(tree, text, &source),
+            Err(problem) => Err(source.refuse(vec![problem])),
+        }
+    }
+
+    fn from_tree(tree: Node, text: &str, source: &Source<'_>) -> Result<Self, SceneError> {
+        validate::known_version(&tree).map_err(|problem| source.refuse(vec![problem]))?;
         let refused = tree.control_characters();
         if !refused.is_empty() {
-            return Err(SceneError::new(name, refused));
+            return Err(source.refuse(refused));
         }
         let mut normalised = tree.clone();
         normalised.expand_chain();
@@ -188,16 +205,24 @@ impl Scene {
         if !problems.is_empty() {
             // Alone they are told with what else does not go together.
             resolve::refuse_unknown_chains(&normalised, &mut problems);
-            return Err(problems.of(name));
+            return Err(problems.of(source.name).within(&source.read));
         }
         let content = SceneText::deserialize(normalised.to_json())
-            .map_err(|error| SceneError::new(name, vec![unreadable(&error)]))?;
+            .map_err(|error| source.refuse(vec![unreadable(&error)]))?;
         Ok(Self {
-            name: name.to_owned(),
+            name: source.name.to_owned(),
             text: text.to_owned(),
+            read: Arc::clone(&source.read),
             tree,
             content,
         })
+    }
+
+    fn source(&self) -> Source<'_> {
+        Source {
+            name: &self.name,
+            read: Arc::clone(&self.read),
+        }
     }
 
     /// Builds the drive.
@@ -206,7 +231,7 @@ impl Scene {
     /// Every part out of range and every pair of parts that do not go together.
     pub fn drive(&self) -> Result<Drive, SceneError> {
         let drive = resolve::drive(&self.content, &self.tree);
-        let drive = drive.map_err(|problems| problems.of(&self.name))?;
+        let drive = drive.map_err(|problems| problems.of(&self.name).within(&self.read))?;
         Ok(drive.0)
     }
 
@@ -225,10 +250,27 @@ impl Scene {
         &self.text
     }
 
+    /// The scene as JSON, as it was written: quantities may be texts with a unit.
+    pub fn json(&self) -> serde_json::Value {
+        self.tree.to_json()
+    }
+
     /// Settings of a run and channels to record, unless the caller gives others.
     pub fn run_defaults(&self) -> RunDefaults {
         let version = self.content.defaults.unwrap_or_default();
         self.content.run.suggestions(version)
+    }
+}
+
+/// Name of a text in messages, and the text that their places belong to.
+struct Source<'a> {
+    name: &'a str,
+    read: Arc<str>,
+}
+
+impl Source<'_> {
+    fn refuse(&self, problems: Vec<Problem>) -> SceneError {
+        SceneError::new(self.name, problems).within(&self.read)
     }
 }
 

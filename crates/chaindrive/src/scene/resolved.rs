@@ -73,7 +73,7 @@ impl Resolved {
     /// As [`Scene::drive`].
     pub(crate) fn of(scene: &Scene) -> Result<Self, SceneError> {
         let (_, assumptions) = resolve::drive(&scene.content, &scene.tree)
-            .map_err(|problems| problems.of(&scene.name))?;
+            .map_err(|problems| problems.of(&scene.name).within(&scene.read))?;
         let mut given = scene.tree.clone();
         given.expand_chain();
         let mut values = json!(scene.content);

@@ -1,4 +1,4 @@
-//! A scene as a tree of values that know their line, whichever language it was written in.
+//! A scene as a tree of values that know their place, whichever language it was written in.
 
 use serde_json::Value as Json;
 use toml_edit::{Item, TableLike, Value as Toml};
@@ -6,13 +6,14 @@ use toml_edit::{Item, TableLike, Value as Toml};
 use super::error::Problem;
 use super::limits;
 use super::path::{push_step, steps};
+use super::place::{Lines, Place};
 use crate::plain::is_command;
 use crate::plain::shorten;
 
-/// A value and the line it stands on.
+/// A value and its place in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Node {
-    pub(crate) line: Option<usize>,
+    pub(crate) place: Option<Place>,
     pub(crate) value: Value,
 }
 
@@ -33,7 +34,7 @@ pub(crate) enum Value {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Entry {
     pub(crate) key: String,
-    pub(crate) line: Option<usize>,
+    pub(crate) place: Option<Place>,
     pub(crate) node: Node,
 }
 
@@ -62,13 +63,13 @@ impl Node {
 
     fn find_control_characters(&self, path: &str, found: &mut Vec<Problem>) {
         let speaks = |text: &str| text.contains(is_command);
-        let problem = |path: &str, line: Option<usize>, what: &str, text: &str| {
+        let problem = |path: &str, place: Option<Place>, what: &str, text: &str| {
             let message = format!("{what} \"{}\" has control characters", shorten(text));
-            Problem::new(path, line, message).hint("leave them out")
+            Problem::new(path, place, message).hint("leave them out")
         };
         match &self.value {
             Value::Text(text) if speaks(text) => {
-                found.push(problem(path, self.line, "the text", text));
+                found.push(problem(path, self.place, "the text", text));
             }
             Value::List(items) => {
                 for (index, item) in items.iter().enumerate() {
@@ -78,7 +79,7 @@ impl Node {
             Value::Table(entries) => {
                 for entry in entries {
                     if speaks(&entry.key) {
-                        found.push(problem(path, entry.line, "the key", &entry.key));
+                        found.push(problem(path, entry.place, "the key", &entry.key));
                     }
                     let dot = if path.is_empty() { "" } else { "." };
                     let within = format!("{path}{dot}{}", entry.key);
@@ -104,10 +105,14 @@ impl Node {
         limits::check_toml(text)?;
         let lines = Lines::new(text);
         let document = toml_edit::Document::parse(text).map_err(|error| {
-            let line = error.span().map(|span| lines.at(span.start));
-            Problem::new("", line, format!("not TOML: {}", one_line(error.message())))
+            let place = error.span().map(|span| lines.at(span));
+            Problem::new(
+                "",
+                place,
+                format!("not TOML: {}", one_line(error.message())),
+            )
         })?;
-        Ok(lines.table(document.as_table(), Some(1)))
+        Ok(lines.table(document.as_table(), Some(Place::line(1))))
     }
 
     /// Parses JSON.
@@ -115,11 +120,14 @@ impl Node {
         limits::check_json(text)?;
         let json: Json = serde_json::from_str(text).map_err(|error| {
             let message = error.to_string();
+            let (line, column) = (error.line(), error.column());
             if message.starts_with("recursion limit") {
-                return limits::too_deep("", Some(error.line()));
+                return limits::too_deep("", Some(Place::line(line)));
             }
             let message = message.split(" at line").next().unwrap_or_default();
-            Problem::new("", Some(error.line()), format!("not JSON: {message}"))
+            let columns = (column > 0).then_some([column, column + 1]);
+            let place = Place { line, columns };
+            Problem::new("", Some(place), format!("not JSON: {message}"))
         })?;
         Ok(Self::from_json(&json))
     }
@@ -140,13 +148,13 @@ impl Node {
                 let entries = entries.iter().filter(|(_, json)| !json.is_null());
                 let entry = |(key, json): (&String, &Json)| Entry {
                     key: key.clone(),
-                    line: None,
+                    place: None,
                     node: Self::from_json(json),
                 };
                 Value::Table(entries.map(entry).collect())
             }
         };
-        Self { line: None, value }
+        Self { place: None, value }
     }
 
     /// As JSON, for serde. Numbers that are not finite become `null`; the validator has refused them.
@@ -174,7 +182,7 @@ impl Node {
             if let Value::Text(_) = entry.node.value {
                 let named = Entry {
                     key: "type".into(),
-                    line: entry.line,
+                    place: entry.place,
                     node: entry.node.clone(),
                 };
                 entry.node.value = Value::Table(vec![named]);
@@ -215,9 +223,9 @@ impl Node {
         }
     }
 
-    /// Takes over the lines of a tree, as far as it has the same values; others stand on no line.
-    pub(crate) fn take_lines(&mut self, of: Option<&Self>) {
-        self.line = of.and_then(|of| of.line);
+    /// Takes over the places of a tree, as far as it has the same values; others have none.
+    pub(crate) fn take_places(&mut self, of: Option<&Self>) {
+        self.place = of.and_then(|of| of.place);
         match &mut self.value {
             Value::Table(entries) => {
                 let known = match of.map(|of| &of.value) {
@@ -226,8 +234,8 @@ impl Node {
                 };
                 for entry in entries {
                     let same = known.iter().find(|it| it.key == entry.key);
-                    entry.line = same.and_then(|same| same.line);
-                    entry.node.take_lines(same.map(|same| &same.node));
+                    entry.place = same.and_then(|same| same.place);
+                    entry.node.take_places(same.map(|same| &same.node));
                 }
             }
             Value::List(items) => {
@@ -236,7 +244,7 @@ impl Node {
                         Some(Value::List(known)) => known.get(index),
                         _ => None,
                     };
-                    item.take_lines(same);
+                    item.take_places(same);
                 }
             }
             _ => {}
@@ -267,9 +275,9 @@ impl Node {
     }
 
     /// Follows a path as far as it leads: the path in its written form, with entries of lists by
-    /// index, and the line of the last value on it.
-    pub(crate) fn locate(&self, path: &str) -> (String, Option<usize>) {
-        let (mut node, mut line) = (Some(self), None);
+    /// index, and the place of the last value on it.
+    pub(crate) fn locate(&self, path: &str) -> (String, Option<Place>) {
+        let (mut node, mut place) = (Some(self), None);
         let mut written = String::new();
         for step in steps(path) {
             let index = node.and_then(|list| list.position(&step));
@@ -280,9 +288,10 @@ impl Node {
                 push_step(&mut written, &step);
                 node = node.and_then(|table| table.get(&step));
             }
-            line = node.and_then(|found| found.line).or(line);
+            // What an option put there has no place, not that of its table.
+            place = node.map_or(place, |found| found.place);
         }
-        (written, line)
+        (written, place)
     }
 }
 
@@ -299,69 +308,50 @@ fn one_line(message: &str) -> String {
         .join("; ")
 }
 
-/// Where the lines of a text begin.
-struct Lines {
-    starts: Vec<usize>,
-}
-
-impl Lines {
-    fn new(text: &str) -> Self {
-        let breaks = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
-        Self {
-            starts: std::iter::once(0)
-                .chain(breaks.map(|(at, _)| at + 1))
-                .collect(),
-        }
-    }
-
-    /// Line of a byte, counted from 1.
-    fn at(&self, byte: usize) -> usize {
-        self.starts.partition_point(|&start| start <= byte)
-    }
-
-    fn table(&self, table: &dyn TableLike, line: Option<usize>) -> Node {
+impl Lines<'_> {
+    fn table(&self, table: &dyn TableLike, place: Option<Place>) -> Node {
         let entry = |(key, item): (&str, &Item)| {
             let span = table
                 .key(key)
                 .and_then(toml_edit::Key::span)
                 .or_else(|| item.span());
-            let line = span.map(|span| self.at(span.start)).or(line);
+            let place = span.map(|span| self.at(span)).or(place);
             Entry {
                 key: key.to_owned(),
-                line,
-                node: self.item(item, line),
+                place,
+                node: self.item(item, place),
             }
         };
         Node {
-            line,
+            place,
             value: Value::Table(table.iter().map(entry).collect()),
         }
     }
 
-    fn item(&self, item: &Item, line: Option<usize>) -> Node {
-        let line = item.span().map(|span| self.at(span.start)).or(line);
+    fn item(&self, item: &Item, place: Option<Place>) -> Node {
+        let place = item.span().map(|span| self.at(span)).or(place);
         match item {
             Item::None => Node {
-                line,
+                place,
                 value: Value::Table(Vec::new()),
             },
-            Item::Value(value) => self.value(value, line),
-            Item::Table(table) => self.table(table, line),
+            Item::Value(value) => self.value(value, place),
+            Item::Table(table) => self.table(table, place),
             Item::ArrayOfTables(tables) => {
                 let node = |table: &toml_edit::Table| {
-                    let line = table.span().map(|span| self.at(span.start)).or(line);
-                    self.table(table, line)
+                    let place = table.span().map(|span| self.at(span)).or(place);
+                    self.table(table, place)
                 };
                 Node {
-                    line,
+                    place,
                     value: Value::List(tables.iter().map(node).collect()),
                 }
             }
         }
     }
 
-    fn value(&self, value: &Toml, line: Option<usize>) -> Node {
-        let line = value.span().map(|span| self.at(span.start)).or(line);
+    fn value(&self, value: &Toml, place: Option<Place>) -> Node {
+        let place = value.span().map(|span| self.at(span)).or(place);
         let value = match value {
             Toml::String(text) => Value::Text(text.value().clone()),
             Toml::Integer(number) => Value::Integer(*number.value()),
@@ -369,11 +359,11 @@ impl Lines {
             Toml::Boolean(truth) => Value::Truth(*truth.value()),
             Toml::Datetime(_) => Value::Date,
             Toml::Array(items) => {
-                Value::List(items.iter().map(|item| self.value(item, line)).collect())
+                Value::List(items.iter().map(|item| self.value(item, place)).collect())
             }
-            Toml::InlineTable(table) => return self.table(table, line),
+            Toml::InlineTable(table) => return self.table(table, place),
         };
-        Node { line, value }
+        Node { place, value }
     }
 }
 
@@ -386,17 +376,16 @@ mod tests {
     #[test]
     fn values_know_their_lines() {
         let tree = Node::parse(TEXT).unwrap();
-        let line = |path| tree.locate(path).1;
+        let line = |path| tree.locate(path).1.map(|place| place.line);
         assert_eq!(line("title"), Some(1));
         assert_eq!(line("chain"), Some(3));
         assert_eq!(line("chain.links"), Some(4));
         assert_eq!(line("sprockets[1]"), Some(10));
         assert_eq!(line("sprockets.crank.teeth"), Some(8));
         assert_eq!(line("sprockets.cam.tooth.gap"), Some(13));
-        assert_eq!(
-            tree.locate("sprockets.cam.teeth"),
-            ("sprockets[1].teeth".into(), Some(10))
-        );
+        let (path, place) = tree.locate("sprockets.cam.teeth");
+        assert_eq!(path, "sprockets[1].teeth");
+        assert_eq!(place.map(|place| place.line), Some(10));
     }
 
     #[test]
@@ -410,8 +399,8 @@ mod tests {
     #[test]
     fn syntax_errors_have_a_line() {
         let problem = Node::parse("[chain]\npitch = = 3\n").unwrap_err();
-        assert_eq!(problem.line, Some(2));
+        assert_eq!(problem.place.map(|it| it.line), Some(2));
         let problem = Node::parse("{\"chain\": \n [1,}").unwrap_err();
-        assert_eq!(problem.line, Some(2), "{problem}");
+        assert_eq!(problem.place.map(|it| it.line), Some(2), "{problem}");
     }
 }

@@ -1,18 +1,20 @@
 //! Compares a tree with the schema, collects every problem, and rewrites quantities to SI.
 //!
 //! Afterwards serde can read the tree: what it would refuse has been refused here, with a place,
-//! a line and a hint.
+//! its part of the text and a hint.
 
+use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet};
 
 use serde_json::{Map, Value as Json};
 
 use super::error::{Problem, Problems};
 use super::expected::{Expected, Reading, kind_of, request};
+use super::keys::Keys;
 use super::path::push_step;
 use super::run_in::RunIn;
 use super::schema::Version;
-use super::suggest::{nearest, one_of};
+use super::suggest::{did_you_mean, distance, nearest, one_of};
 use super::tree::{Entry, Node, Value};
 use crate::plain::shorten;
 use chaindrive_quantities::{CONTACT_STIFFNESS, Dimension, Range};
@@ -20,21 +22,22 @@ use chaindrive_quantities::{CONTACT_STIFFNESS, Dimension, Range};
 /// Checks `tree` against `schema` and normalises it: quantities become SI numbers, bare names of
 /// kinds become tables.
 pub(crate) fn validate(tree: &mut Node, schema: &Json) -> Problems {
-    let mut validator = Validator::new(schema);
+    let mut validator = Validator::new(schema, schema);
     validator.visit(tree, schema, "", None);
     validator.problems
 }
 
 /// The same of a part on its own, by the name that its type has in the schema.
 pub(crate) fn validate_part(tree: &mut Node, schema: &Json, name: &str) -> Problems {
-    let mut validator = Validator::new(schema);
-    validator.visit(tree, &schema["$defs"][name], "", None);
+    let part = &schema["$defs"][name];
+    let mut validator = Validator::new(schema, part);
+    validator.visit(tree, part, "", None);
     validator.problems
 }
 
 /// SI units of the quantities of a valid tree, by path; the tree is normalised.
 pub(crate) fn units(tree: &mut Node, schema: &Json) -> HashMap<String, &'static str> {
-    let mut validator = Validator::new(schema);
+    let mut validator = Validator::new(schema, schema);
     validator.units = Some(HashMap::new());
     validator.visit(tree, schema, "", None);
     validator.units.unwrap_or_default()
@@ -61,22 +64,27 @@ pub(crate) fn known_version(tree: &Node) -> Result<(), Problem> {
             format!("chaindrive {version} knows {known}; take a newer one, or leave it out")
         };
         let message = format!("`{written}` is not a known version");
-        return Err(Problem::new(key, node.line, message).hint(hint));
+        return Err(Problem::new(key, node.place, message).hint(hint));
     }
     Ok(())
 }
 
 struct Validator<'s> {
     schema: Reading<'s>,
+    /// Schema of the tree, and the keys that it has anywhere: needed for the first unknown one.
+    root: &'s Json,
+    keys: OnceCell<Keys>,
     problems: Problems,
     /// Units of the quantities passed, where they are wanted.
     units: Option<HashMap<String, &'static str>>,
 }
 
 impl<'s> Validator<'s> {
-    fn new(schema: &'s Json) -> Self {
+    fn new(schema: &'s Json, root: &'s Json) -> Self {
         Self {
             schema: Reading::new(schema),
+            root,
+            keys: OnceCell::new(),
             problems: Problems::default(),
             units: None,
         }
@@ -113,7 +121,7 @@ impl<'s> Validator<'s> {
                 Value::Text(text) => {
                     if let Err(problem) = text.parse::<RunIn>() {
                         let hint = "write a time such as \"0.5 s\", turns such as \"5 turns of camshaft\", or \"auto\"";
-                        self.refuse(Problem::new(path, node.line, problem).hint(hint));
+                        self.refuse(Problem::new(path, node.place, problem).hint(hint));
                     }
                 }
                 Value::Integer(_) | Value::Float(_) => {}
@@ -138,14 +146,14 @@ impl<'s> Validator<'s> {
         };
         self.refuse(Problem::new(
             path,
-            node.line,
+            node.place,
             format!("found {found}, needed is {needed}"),
         ));
     }
 
     /// `kind` is the member of the family the table has been found to be.
     fn table(&mut self, node: &mut Node, schema: &'s Json, path: &str, kind: Option<&str>) {
-        let line = node.line;
+        let here = node.place;
         if !matches!(node.value, Value::Table(_)) {
             self.wrong_type(node, path, "a table");
             return;
@@ -166,7 +174,7 @@ impl<'s> Validator<'s> {
             let place = below(path, &entry.key);
             if !seen.insert(entry.key.clone()) {
                 let message = "stands twice";
-                self.refuse(Problem::new(&place, entry.line, message).hint("keep one of them"));
+                self.refuse(Problem::new(&place, entry.place, message).hint("keep one of them"));
             }
             // A lookup by the schema's own lifetime, not that of the local default.
             let property = schema.get("properties").and_then(|all| all.get(&entry.key));
@@ -178,14 +186,17 @@ impl<'s> Validator<'s> {
                             "found the number {}, needed is a table",
                             number(&entry.node).unwrap_or(f64::NAN)
                         );
-                        let problem = Problem::new(&place, entry.line, text);
+                        let problem = Problem::new(&place, entry.place, text);
                         self.refuse(problem.hint(format!("did you mean `{near}`?")));
                         meant.push(near);
                     }
                     None => self.visit(&mut entry.node, property, &place, exponent),
                 },
                 None => self.problems.push_with(|| {
-                    let (near, problem) = unknown_key(entry, &place, &known, kind);
+                    let keys = self
+                        .keys
+                        .get_or_init(|| Keys::below(self.root, &self.schema));
+                    let (near, problem) = unknown_key(entry, path, &known, kind, keys);
                     meant.extend(near);
                     problem
                 }),
@@ -203,7 +214,7 @@ impl<'s> Validator<'s> {
                 continue;
             }
             let place = below(path, key);
-            let problem = Problem::new(&place, line, "missing");
+            let problem = Problem::new(&place, here, "missing");
             self.refuse(match request(&properties[key]) {
                 Some(text) => problem.hint(text),
                 None => problem,
@@ -235,7 +246,7 @@ impl<'s> Validator<'s> {
         if core.get("x-dimension").is_some() && matches!(node.value, Value::Table(_)) {
             self.common_unit(node, path);
         }
-        let line = node.line;
+        let here = node.place;
         let Value::List(entries) = &mut node.value else {
             self.wrong_type(node, path, "a list");
             return;
@@ -251,7 +262,7 @@ impl<'s> Validator<'s> {
             _ => None,
         };
         if let Some(message) = refusal {
-            self.refuse(Problem::new(path, line, message));
+            self.refuse(Problem::new(path, here, message));
             // Whatever the values are, they are too many or too few.
             return;
         }
@@ -290,18 +301,21 @@ impl<'s> Validator<'s> {
             // A bare name; what else its kind needs is reported as missing.
             let kind = Entry {
                 key: "kind".into(),
-                line: node.line,
+                place: node.place,
                 node: node.clone(),
             };
             if !matches_any(&names, name) {
-                let problem =
-                    Problem::new(path, node.line, format!("unknown kind `{}`", shorten(name)));
+                let problem = Problem::new(
+                    path,
+                    node.place,
+                    format!("unknown kind `{}`", shorten(name)),
+                );
                 self.refuse(problem.hint(one_of(name, &names)));
                 return;
             }
             node.value = Value::Table(vec![kind]);
         }
-        let line = node.line;
+        let here = node.place;
         let Value::Table(entries) = &mut node.value else {
             self.wrong_type(node, path, "a table with a `kind`");
             return;
@@ -311,15 +325,15 @@ impl<'s> Validator<'s> {
         {
             entries.push(Entry {
                 key: "kind".into(),
-                line,
+                place: here,
                 node: Node {
-                    line,
+                    place: here,
                     value: Value::Text(kind.to_owned()),
                 },
             });
         }
         let Some(entry) = entries.iter_mut().find(|entry| entry.key == "kind") else {
-            let problem = Problem::new(&below(path, "kind"), line, "missing");
+            let problem = Problem::new(&below(path, "kind"), here, "missing");
             self.refuse(problem.hint(format!("the kinds are {}", names.join(", "))));
             return;
         };
@@ -334,7 +348,7 @@ impl<'s> Validator<'s> {
             .find(|m| kind_of(m).is_some_and(|k| same(k, name)))
         else {
             let message = format!("unknown kind `{}`", shorten(name));
-            let problem = Problem::new(&place, entry.node.line, message);
+            let problem = Problem::new(&place, entry.node.place, message);
             let hint = one_of(name, &names);
             self.refuse(problem.hint(hint));
             return;
@@ -353,7 +367,7 @@ impl<'s> Validator<'s> {
             node.value = Value::Text((*word).to_owned());
         } else {
             let message = format!("unknown value `{}`", shorten(text));
-            self.refuse(Problem::new(path, node.line, message).hint(one_of(text, words)));
+            self.refuse(Problem::new(path, node.place, message).hint(one_of(text, words)));
         }
     }
 
@@ -382,7 +396,7 @@ impl<'s> Validator<'s> {
                 match word.map_or_else(read, Ok) {
                     Ok(value) => value,
                     Err(complaint) => {
-                        let problem = Problem::new(path, node.line, complaint.message);
+                        let problem = Problem::new(path, node.place, complaint.message);
                         self.refuse(problem.hint(complaint.hint));
                         return;
                     }
@@ -397,7 +411,7 @@ impl<'s> Validator<'s> {
         if value.is_finite() {
             node.value = Value::Float(value);
         } else {
-            let problem = Problem::new(path, node.line, format!("{value} is not a finite number"));
+            let problem = Problem::new(path, node.place, format!("{value} is not a finite number"));
             let hint = format!("give {} such as \"{}\"", dimension.name, dimension.example);
             self.refuse(problem.hint(hint));
         }
@@ -420,7 +434,7 @@ impl<'s> Validator<'s> {
         };
         if let Some(allowed) = Range(schema).refuses(value) {
             let message = format!("{value}, must be {allowed}");
-            let problem = Problem::new(path, node.line, message);
+            let problem = Problem::new(path, node.place, message);
             let remedy = schema.get("x-remedy").and_then(Json::as_str);
             self.refuse(match remedy {
                 Some(remedy) => problem.hint(remedy),
@@ -447,19 +461,31 @@ fn number(node: &Node) -> Option<f64> {
     }
 }
 
+/// The problem of a key that the table at `path` does not have, and the key of that table that was meant.
 fn unknown_key(
     entry: &Entry,
-    place: &str,
+    path: &str,
     known: &[&str],
     kind: Option<&str>,
+    keys: &Keys,
 ) -> (Option<String>, Problem) {
     let message = match kind {
         Some(kind) => format!("unknown key; a `{kind}` has no `{}`", shorten(&entry.key)),
         None => "unknown key".to_owned(),
     };
-    let problem = Problem::new(place, entry.line, message);
-    let near = nearest(&entry.key, known).map(str::to_owned);
-    (near, problem.hint(one_of(&entry.key, known)))
+    let problem = Problem::new(&below(path, &entry.key), entry.place, message);
+    let near = nearest(&entry.key, known);
+    let typing_errors = near.and_then(|near| distance(&entry.key, near));
+    match keys.elsewhere((&entry.key, &entry.node.value), path) {
+        // One typing error is likelier than a wrong table, and a wrong table than two typing errors.
+        Some((far, paths)) if typing_errors.is_none_or(|errors| errors > far + 1) => {
+            (None, problem.hint(did_you_mean(&paths)))
+        }
+        _ => {
+            let near = near.map(str::to_owned);
+            (near, problem.hint(one_of(&entry.key, known)))
+        }
+    }
 }
 
 /// A path with one more step.

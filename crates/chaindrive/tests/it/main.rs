@@ -24,6 +24,7 @@ mod links;
 mod live;
 mod loads;
 mod mistakes;
+mod misuse;
 mod motors;
 mod object_store;
 mod one_force;

@@ -174,7 +174,8 @@ fn versions_that_nobody_knows_are_refused_with_a_hint() {
         let error = Scene::from_toml(&format!("{line}\n{}", ring.text()), "ring");
         let error = error.unwrap_err();
         assert!(error.to_string().contains(words), "{error}");
-        assert_eq!((error.problems.len(), error.problems[0].line), (1, Some(1)));
+        let line = error.problems[0].place.map(|place| place.line);
+        assert_eq!((error.problems.len(), line), (1, Some(1)));
     }
 }
 

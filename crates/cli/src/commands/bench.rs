@@ -12,7 +12,7 @@ use clap::Args;
 
 use crate::failure::Failure;
 use crate::progress::waiting;
-use crate::request::{RunArguments, SceneArguments};
+use crate::request::{RunArguments, SceneArguments, any, some};
 use crate::terminal::print;
 
 /// Measures work and precision of methods and steps on a scene; prints a table, saves it and a diagram.
@@ -42,11 +42,11 @@ pub(crate) struct Arguments {
     onset_depth: Option<String>,
 
     /// Timed runs of which the median is taken
-    #[arg(long, default_value_t = Study::default().repeats)]
+    #[arg(long, default_value_t = Study::default().repeats, value_parser = some::<usize>)]
     repeats: usize,
 
     /// Runs of the reference that start 1e-12 m apart, for the spread of the statistics
-    #[arg(long, default_value_t = Study::default().replicates)]
+    #[arg(long, default_value_t = Study::default().replicates, value_parser = any::<usize>)]
     replicates: usize,
 
     /// Name of the files, to which .csv and .svg are added; absent: work-precision

@@ -3,11 +3,15 @@
 use chaindrive::describe::{counted, warnings};
 use chaindrive::{Run, assemble};
 use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
 
+use crate::answer::answer;
+use crate::complaint::Trouble;
 use crate::failure::Failure;
 use crate::progress::waiting;
 use crate::request::load;
-use crate::terminal::{print, say};
+use crate::terminal::{print, say, tell};
 
 /// Reads scenes, assembles their drives, and reports everything that is wrong.
 #[derive(Debug, Args)]
@@ -15,19 +19,80 @@ pub(crate) struct Arguments {
     /// Scene files, `-` for stdin, or names of embedded scenes
     #[arg(value_name = "SCENE|PRESET", required = true)]
     scenes: Vec<String>,
+
+    /// Prints JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Answer of `chaindrive check --json`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct Checked {
+    /// The scenes, in the order in which they were given.
+    scenes: Vec<SceneEntry>,
+}
+
+/// A scene, sound or wrong.
+#[derive(Debug, Serialize, JsonSchema)]
+struct SceneEntry {
+    /// File or embedded scene.
+    scene: String,
+    /// Contents of a sound scene; absent for a wrong one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sound: Option<Contents>,
+    /// What is wrong; absent for a sound scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<Trouble>,
+}
+
+/// Contents of a sound scene.
+#[derive(Debug, Serialize, JsonSchema)]
+struct Contents {
+    /// Number of chains.
+    chains: usize,
+    /// Links of all chains.
+    links: usize,
+    /// Number of sprockets.
+    sprockets: usize,
+    /// Number of guides.
+    guides: usize,
+    /// Number of tensioners.
+    tensioners: usize,
+    /// Degrees of freedom that move.
+    degrees_of_freedom: usize,
+    /// Objections that do not keep it from running.
+    warnings: Vec<String>,
 }
 
 pub(crate) fn check(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let mut wrong = 0;
+    let mut entries = Vec::new();
     for name in &arguments.scenes {
+        let mut entry = SceneEntry {
+            scene: name.clone(),
+            sound: None,
+            error: None,
+        };
         match sound(name, interrupted) {
-            Ok(what) => print(format_args!("{name}: {what}"))?,
+            Ok(contents) => {
+                if !arguments.json {
+                    contents.show(name)?;
+                }
+                entry.sound = Some(contents);
+            }
             Err(Failure::Interrupted) => return Err(Failure::Interrupted),
             Err(failure) => {
-                say(failure);
+                if !arguments.json {
+                    tell(&failure);
+                }
+                entry.error = Some(Trouble::of(&failure));
                 wrong += 1;
             }
         }
+        entries.push(entry);
+    }
+    if arguments.json {
+        answer(&Checked { scenes: entries })?;
     }
     let scenes = arguments.scenes.len();
     if wrong == 0 {
@@ -37,27 +102,39 @@ pub(crate) fn check(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     }
 }
 
-/// Contents of a sound scene.
-fn sound(name: &str, interrupted: &dyn Fn() -> bool) -> Result<String, Failure> {
+impl Contents {
+    fn show(&self, name: &str) -> Result<(), Failure> {
+        for warning in &self.warnings {
+            say(format_args!("warning: {name}: {warning}"));
+        }
+        let chain = match self.chains {
+            1 => counted(self.links, "link"),
+            chains => format!("{chains} chains of {} links", self.links),
+        };
+        print(format_args!(
+            "{name}: sound; {chain}, {}, {}, {}, {} of freedom",
+            counted(self.sprockets, "sprocket"),
+            counted(self.guides, "guide"),
+            counted(self.tensioners, "tensioner"),
+            counted(self.degrees_of_freedom, "degree")
+        ))
+    }
+}
+
+fn sound(name: &str, interrupted: &dyn Fn() -> bool) -> Result<Contents, Failure> {
     let scene = load(name, interrupted)?;
     let drive = scene.drive()?;
     let what = format!("{name}: assembling");
     let assembled = waiting(&what, interrupted, |stop| assemble(&drive, stop));
     let assembled = Failure::or_interrupted(assembled, scene.name())?;
     let run = Run::suggested(&scene.run_defaults());
-    for warning in warnings(&assembled, run.until) {
-        say(format_args!("warning: {name}: {warning}"));
-    }
-    let links = assembled.system.links();
-    let chain = match drive.chains.len() {
-        1 => counted(links, "link"),
-        chains => format!("{chains} chains of {links} links"),
-    };
-    Ok(format!(
-        "sound; {chain}, {}, {}, {}, {} of freedom",
-        counted(drive.sprockets.len(), "sprocket"),
-        counted(drive.guides.len(), "guide"),
-        counted(drive.tensioners.len(), "tensioner"),
-        counted(assembled.system.free_dofs(), "degree")
-    ))
+    Ok(Contents {
+        chains: drive.chains.len(),
+        links: assembled.system.links(),
+        sprockets: drive.sprockets.len(),
+        guides: drive.guides.len(),
+        tensioners: drive.tensioners.len(),
+        degrees_of_freedom: assembled.system.free_dofs(),
+        warnings: warnings(&assembled, run.until),
+    })
 }

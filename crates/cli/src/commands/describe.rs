@@ -4,7 +4,9 @@ use chaindrive::precision::choose;
 use chaindrive::{Description, Request, assemble, patiently};
 use clap::Args;
 
+use crate::answer::answer;
 use crate::failure::Failure;
+use crate::progress::waiting;
 use crate::request::{RunArguments, SceneArguments};
 use crate::terminal::{print, say};
 
@@ -34,23 +36,24 @@ pub(crate) fn describe(
         ..
     } = arguments.run.apply(&arguments.scene.load(interrupted)?)?;
     let drive = scene.drive()?;
-    for note in arguments.scene.notes(&scene) {
+    let notes = arguments.scene.notes(&scene);
+    for note in notes.iter().filter(|_| !arguments.json) {
         say(note);
     }
     // Assembled once: long chains that sag take half a minute to settle.
-    let start = Failure::or_interrupted(assemble(&drive, interrupted), scene.name())?;
-    // What a run would do, it would do by the method that it would choose.
-    let choice = accuracy
-        .map(|accuracy| choose(&start, &run, (accuracy, accuracy_of), interrupted))
-        .transpose();
-    let choice = Failure::or_interrupted(choice, scene.name())?;
-    let run = choice.as_ref().map_or(run, |choice| choice.run.clone());
-    let described = patiently(move || Description::of_assembled(&start, &run), interrupted);
-    let described = described.and_then(|described| described);
-    let description = Failure::or_interrupted(described, scene.name())?;
+    let described = waiting("describing", interrupted, |stop| {
+        let start = assemble(&drive, stop)?;
+        // What a run would do, it would do by the method that it would choose.
+        let choice = accuracy
+            .map(|accuracy| choose(&start, &run, (accuracy, accuracy_of), stop))
+            .transpose()?;
+        let run = choice.as_ref().map_or(run, |choice| choice.run.clone());
+        let described = patiently(move || Description::of_assembled(&start, &run), stop)??;
+        Ok((described, choice))
+    });
+    let (description, choice) = Failure::or_interrupted(described, scene.name())?;
     if arguments.json {
-        let json = serde_json::to_string_pretty(&description);
-        print(json.map_err(|error| Failure::Argument(error.to_string()))?)
+        answer(&description)
     } else {
         let title = scene.title();
         let title = if title.is_empty() {

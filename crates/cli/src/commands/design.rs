@@ -4,9 +4,12 @@ use chaindrive::catalogue::Number;
 use chaindrive::design::{ChainLayout, clashes, of, of_two_sprockets};
 use chaindrive::scene::{chain_named, read_length};
 use clap::{ArgGroup, Args};
+use schemars::JsonSchema;
+use serde::Serialize;
 
+use crate::answer::answer;
 use crate::failure::Failure;
-use crate::request::load;
+use crate::request::{load, some};
 use crate::terminal::print;
 
 /// Lays out the chains of a scene, or a chain on two sprockets: links, spans, points of tangency, wraps, seats, clashes.
@@ -29,7 +32,8 @@ pub(crate) struct Arguments {
         value_name = "TEETH,TEETH",
         value_delimiter = ',',
         num_args = 1,
-        requires = "of"
+        requires = "of",
+        value_parser = some::<u32>
     )]
     sprockets: Vec<u32>,
 
@@ -46,7 +50,7 @@ pub(crate) struct Arguments {
     centre_distance: Option<String>,
 
     /// Number of links, for which the distance is found
-    #[arg(long, value_name = "LINKS", requires = "sprockets")]
+    #[arg(long, value_name = "LINKS", requires = "sprockets", value_parser = some::<u32>)]
     links: Option<u32>,
 
     /// Prints JSON
@@ -116,11 +120,21 @@ fn of_two(arguments: &Arguments) -> Result<ChainLayout, Failure> {
         .map_err(|error| Failure::Argument(error.to_string()))
 }
 
+/// Answer of `chaindrive design --json`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct Layouts<'a> {
+    /// Closed chains, laid out.
+    chains: &'a [ChainLayout],
+    /// Bodies in each other's way.
+    clashes: &'a [String],
+}
+
 fn show(layouts: &[ChainLayout], clashes: &[String], json: bool) -> Result<(), Failure> {
     if json {
-        let told = serde_json::json!({ "chains": layouts, "clashes": clashes });
-        let told = serde_json::to_string_pretty(&told);
-        return print(told.map_err(|error| Failure::Argument(error.to_string()))?);
+        return answer(&Layouts {
+            chains: layouts,
+            clashes,
+        });
     }
     for layout in layouts {
         print(layout.to_string().trim_end())?;

@@ -11,6 +11,7 @@ use clap::Args;
 use chaindrive::scene::read_time;
 
 use crate::failure::Failure;
+use crate::progress::waiting;
 use crate::request::SceneArguments;
 use crate::terminal::{print, say};
 
@@ -79,21 +80,19 @@ fn figure(
     interrupted: &dyn Fn() -> bool,
 ) -> Result<Figure, Failure> {
     let drive = scene.drive()?;
-    let figure = patiently(
-        move || {
-            let drive = if run_in > 0.0 {
-                drive.beginning(-run_in)?
-            } else {
-                drive
-            };
-            if laid {
-                drive.figure_as_laid()
-            } else {
-                drive.figure()
-            }
-        },
-        interrupted,
-    );
+    let work = move || {
+        let drive = if run_in > 0.0 {
+            drive.beginning(-run_in)?
+        } else {
+            drive
+        };
+        if laid {
+            drive.figure_as_laid()
+        } else {
+            drive.figure()
+        }
+    };
+    let figure = waiting("drawing", interrupted, |stop| patiently(work, stop));
     let figure = figure.and_then(|figure| figure.map_err(Into::into));
     Failure::or_interrupted(figure, scene.name())
 }

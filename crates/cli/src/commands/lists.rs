@@ -1,11 +1,16 @@
-//! `chaindrive scenes`, `schema`, `channels`, `catalogue` and `--version`: what there is.
+//! `chaindrive scenes`, `channels`, `catalogue` and `--version`: what there is.
+
+use std::collections::BTreeMap;
 
 use chaindrive::catalogue::{CatalogueChain, Number, catalogue as chains};
 use chaindrive::figure::{Measure, with_digits};
-use chaindrive::scene::{presets, schema as scene_schema};
+use chaindrive::scene::{chain_named, presets};
 use chaindrive::{Build, Channel, InstructionSet, Origin, Scene};
 use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
 
+use crate::answer::answer;
 use crate::failure::Failure;
 use crate::terminal::print;
 
@@ -26,25 +31,85 @@ pub(crate) fn scenes(arguments: &Scenes) -> Result<(), Failure> {
     Ok(())
 }
 
-pub(crate) fn schema() -> Result<(), Failure> {
-    print(format_args!("{:#}", scene_schema()))
+/// Lists what a run can record.
+#[derive(Debug, Args)]
+pub(crate) struct Channels {
+    /// Prints JSON
+    #[arg(long)]
+    json: bool,
 }
 
-pub(crate) fn channels() -> Result<(), Failure> {
-    for channel in Channel::ALL {
-        let default = if Channel::DEFAULT.contains(channel) {
-            "*"
-        } else if Channel::WHERE_BODIES_MOVE.contains(channel) {
-            "+"
-        } else {
-            " "
+/// Answer of `chaindrive channels --json`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct ChannelList {
+    /// All channels.
+    channels: Vec<ChannelEntry>,
+}
+
+/// What a run can record.
+#[derive(Debug, Serialize, JsonSchema)]
+struct ChannelEntry {
+    /// Name, for `--record` and in results.
+    name: &'static str,
+    /// SI unit; of tensioners, that of sliders.
+    unit: &'static str,
+    /// Things to which its entries belong; absent for one number a sample.
+    dimension: Option<&'static str>,
+    /// One line of description.
+    description: &'static str,
+    /// When it is recorded unless asked otherwise.
+    recorded: Recorded,
+}
+
+/// When a channel is recorded unless asked otherwise.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+enum Recorded {
+    /// In every run.
+    Always,
+    /// Where tensioners or centres move.
+    WhereBodiesMove,
+    /// Where it is asked for.
+    OnDemand,
+}
+
+impl ChannelEntry {
+    fn of(channel: Channel) -> Self {
+        Self {
+            name: channel.name(),
+            unit: channel.unit(),
+            dimension: channel.axis().name(),
+            description: channel.description(),
+            recorded: if Channel::DEFAULT.contains(&channel) {
+                Recorded::Always
+            } else if Channel::WHERE_BODIES_MOVE.contains(&channel) {
+                Recorded::WhereBodiesMove
+            } else {
+                Recorded::OnDemand
+            },
+        }
+    }
+}
+
+pub(crate) fn channels(arguments: &Channels) -> Result<(), Failure> {
+    let entries = Channel::ALL.iter().copied().map(ChannelEntry::of);
+    if arguments.json {
+        return answer(&ChannelList {
+            channels: entries.collect(),
+        });
+    }
+    for channel in entries {
+        let default = match channel.recorded {
+            Recorded::Always => "*",
+            Recorded::WhereBodiesMove => "+",
+            Recorded::OnDemand => " ",
         };
-        let dimension = channel.axis().name().unwrap_or("");
         print(format_args!(
-            "{default} {:20} {:6} {dimension:10} {}",
-            channel.name(),
-            channel.unit(),
-            channel.description()
+            "{default} {:20} {:6} {:10} {}",
+            channel.name,
+            channel.unit,
+            channel.dimension.unwrap_or(""),
+            channel.description
         ))?;
     }
     print(
@@ -85,6 +150,67 @@ pub(crate) fn version(verbose: bool) -> Result<(), Failure> {
 pub(crate) struct Catalogue {
     /// Chain to look up, such as 16B-1 or 80
     name: Option<String>,
+
+    /// Prints JSON: all that is known of the chain, or of all chains
+    #[arg(long)]
+    json: bool,
+}
+
+/// Answer of `chaindrive catalogue --json`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct ChainList {
+    /// The chains, or the one that was asked for.
+    chains: Vec<ChainEntry>,
+}
+
+/// A chain that a scene can name.
+#[derive(Debug, Serialize, JsonSchema)]
+struct ChainEntry {
+    /// ISO designation, or the name of the trade.
+    name: &'static str,
+    /// ANSI number; absent where there is none.
+    ansi: Option<&'static str>,
+    /// Part that runs on the teeth: roller or bush.
+    kind: &'static str,
+    /// What is known of it, by name.
+    numbers: BTreeMap<&'static str, NumberEntry>,
+    /// Where makers differ by more than a per cent; absent where they do not.
+    makers_differ: Option<&'static str>,
+}
+
+/// A number of the catalogue.
+#[derive(Debug, Serialize, JsonSchema)]
+struct NumberEntry {
+    /// Value in SI units.
+    value: f64,
+    /// The unit.
+    unit: &'static str,
+    /// One line of description.
+    description: &'static str,
+    /// Where it is from.
+    source: &'static str,
+}
+
+impl ChainEntry {
+    fn of(chain: &'static CatalogueChain) -> Self {
+        let some = |text: &'static str| Some(text).filter(|text| !text.is_empty());
+        let number = |number: Number| {
+            let entry = NumberEntry {
+                value: chain.number(number)?,
+                unit: number.unit(),
+                description: number.description(),
+                source: chain.status(number.status()),
+            };
+            Some((number.name(), entry))
+        };
+        Self {
+            name: &chain.name,
+            ansi: some(&chain.ansi),
+            kind: &chain.kind,
+            numbers: Number::ALL.into_iter().filter_map(number).collect(),
+            makers_differ: some(&chain.makers_differ),
+        }
+    }
 }
 
 /// Quantity in the list, and how many of its units make one of SI.
@@ -101,8 +227,17 @@ const SHOWN: [(Number, &str, f64); 8] = [
 
 pub(crate) fn catalogue(arguments: &Catalogue) -> Result<(), Failure> {
     if let Some(name) = &arguments.name {
-        let unknown = || Failure::Argument(format!("no chain of the catalogue is named `{name}`"));
-        return entry(CatalogueChain::named(name).ok_or_else(unknown)?);
+        let chain = chain_named(name).map_err(|problem| Failure::Argument(problem.to_string()));
+        let chain = chain?;
+        if arguments.json {
+            let chains = vec![ChainEntry::of(chain)];
+            return answer(&ChainList { chains });
+        }
+        return entry(chain);
+    }
+    if arguments.json {
+        let chains = chains().iter().map(ChainEntry::of).collect();
+        return answer(&ChainList { chains });
     }
     let heading = SHOWN.map(|(_, heading, _)| format!("{heading:>10}"));
     print(format_args!(

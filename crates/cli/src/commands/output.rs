@@ -1,12 +1,51 @@
-//! Where the samples of a run go: nowhere, a Zarr store or a CSV file.
+//! Where the samples of a run go: nowhere, a Zarr store, a CSV file or standard output.
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-use chaindrive::record::{Existing, InStore, Provenance};
-use chaindrive::{Channel, Checkpoint, End, Simulation, Sink};
+use chaindrive::record::{Existing, InStore, Provenance, take_over};
+use chaindrive::{Channel, Checkpoint, End, EventKinds, Recording, Simulation, Sink};
+use clap::Args;
 
 use crate::csv::CsvWriter;
 use crate::failure::Failure;
+use crate::stream::{Format, Stream};
+use crate::terminal::{print, say};
+
+/// Where a result is wanted.
+#[derive(Debug, Args)]
+pub(crate) struct Place {
+    /// Where the result goes: a Zarr store (.zarr), readable while it grows, a table (.csv), or - for a table on
+    /// standard output
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Format of a table on standard output, csv unless given
+    #[arg(long, value_enum, requires = "output")]
+    format: Option<Format>,
+
+    /// Replaces an earlier result of the same name
+    #[arg(long)]
+    overwrite: bool,
+
+    /// Takes over where another user, or a process that died, left the folder of a writer
+    #[arg(long)]
+    take_over: bool,
+}
+
+impl Place {
+    /// What becomes of an earlier result; the folder of its writer is taken over where that is asked for.
+    pub(crate) fn existing(&self) -> Result<Existing, Failure> {
+        if let Some(path) = self.output.as_ref().filter(|_| self.take_over) {
+            take_over(path)?;
+        }
+        Ok(if self.overwrite {
+            Existing::Replace
+        } else {
+            Existing::Keep
+        })
+    }
+}
 
 /// Where the samples go, by the name asked for.
 #[derive(Debug)]
@@ -14,21 +53,39 @@ pub(crate) enum Target {
     Nowhere,
     Zarr(PathBuf),
     Csv(PathBuf),
+    /// Standard output.
+    Stream(Format),
 }
 
 impl Target {
-    /// The extension decides.
-    pub(crate) fn of(path: Option<&Path>) -> Result<Self, Failure> {
-        let Some(path) = path else {
-            return Ok(Self::Nowhere);
+    /// The extension decides; on standard output, the format that is asked for.
+    pub(crate) fn of(place: &Place) -> Result<Self, Failure> {
+        let path = match (place.output.as_deref(), place.format) {
+            (Some(path), format) if path == Path::new("-") => {
+                return Ok(Self::Stream(format.unwrap_or_default()));
+            }
+            (_, Some(_)) => {
+                let message =
+                    "--format: the name of a file tells its format; give --format with -o - only";
+                return Err(Failure::Argument(message.to_owned()));
+            }
+            (None, None) => return Ok(Self::Nowhere),
+            (Some(path), None) => path,
         };
         match path.extension().and_then(|extension| extension.to_str()) {
             Some("zarr") => Ok(Self::Zarr(path.to_owned())),
             Some("csv") => Ok(Self::Csv(path.to_owned())),
             _ => Err(Failure::Argument(format!(
-                "{}: the name must end in .zarr or .csv",
+                "{}: the name must end in .zarr or .csv, or be - for standard output",
                 path.display()
             ))),
+        }
+    }
+
+    pub(crate) fn page(&self) -> Page {
+        match self {
+            Self::Stream(_) => Page::Aside,
+            _ => Page::Out,
         }
     }
 
@@ -38,6 +95,7 @@ impl Target {
             Self::Zarr(_) => return Ok(()),
             Self::Nowhere => "nothing is written".to_owned(),
             Self::Csv(path) => format!("{}: a table cannot be carried on", path.display()),
+            Self::Stream(_) => "standard output cannot be carried on".to_owned(),
         };
         Err(Failure::Argument(format!(
             "--checkpoint-every: {found}; give a Zarr store, such as -o run.zarr"
@@ -50,9 +108,35 @@ impl Target {
             Self::Nowhere => Output::Nowhere,
             Self::Zarr(path) => Output::Zarr(Box::new(InStore::new(path, existing))),
             Self::Csv(path) => Output::NewCsv(path, existing),
+            Self::Stream(format) => Output::NewStream(format),
         }
     }
 }
+
+/// Where people read what came of a result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Page {
+    /// On stdout.
+    Out,
+    /// On stderr, since the table is on stdout.
+    Aside,
+}
+
+impl Page {
+    pub(crate) fn tell(self, text: impl Display) -> Result<(), Failure> {
+        match self {
+            Self::Out => print(text),
+            Self::Aside => {
+                say(text);
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Message about two documents on stdout.
+pub(crate) const ONE_DOCUMENT: &str =
+    "--json: standard output takes one document; give -o a file, or leave --json out";
 
 /// A result in the making.
 #[derive(Debug)]
@@ -62,6 +146,10 @@ pub(crate) enum Output {
     /// A table that is begun when the run is.
     NewCsv(PathBuf, Existing),
     Csv(Box<CsvWriter>),
+    /// A table on standard output that is begun when the run is.
+    NewStream(Format),
+    /// The table, and its last sample.
+    Stream(Box<Stream>, Box<Recording>),
 }
 
 impl Sink for Output {
@@ -74,12 +162,22 @@ impl Sink for Output {
         provenance: &Provenance,
     ) -> Result<(), Failure> {
         match self {
-            Self::Nowhere | Self::Csv(_) => {}
+            Self::Nowhere | Self::Csv(_) | Self::Stream(..) => {}
             Self::Zarr(store) => store.begin(simulation, channels, provenance)?,
             Self::NewCsv(path, existing) => {
                 let events = provenance.run.events;
                 let writer = CsvWriter::create(path, simulation, channels, events, *existing)?;
                 *self = Self::Csv(Box::new(writer));
+            }
+            Self::NewStream(format) => {
+                if provenance.run.events != EventKinds::default() {
+                    let message =
+                        "--events: standard output takes one table; give -o run.csv or -o run.zarr";
+                    return Err(Failure::Argument(message.to_owned()));
+                }
+                let stream = Stream::of_samples(*format, simulation, channels)?;
+                let row = Recording::new(channels, simulation.system());
+                *self = Self::Stream(Box::new(stream), Box::new(row));
             }
         }
         Ok(())
@@ -91,25 +189,31 @@ impl Sink for Output {
 
     fn push(&mut self, simulation: &Simulation) -> Result<(), Failure> {
         match self {
-            Self::Nowhere | Self::NewCsv(..) => Ok(()),
+            Self::Nowhere | Self::NewCsv(..) | Self::NewStream(_) => Ok(()),
             Self::Zarr(store) => Ok(store.push(simulation)?),
             Self::Csv(writer) => writer.push(simulation),
+            Self::Stream(stream, row) => {
+                row.clear();
+                row.push(simulation.observation());
+                stream.push(row)
+            }
         }
     }
 
     fn keep(&mut self, simulation: &Simulation, checkpoint: &Checkpoint) -> Result<(), Failure> {
         match self {
-            Self::Nowhere | Self::NewCsv(..) | Self::Csv(_) => Ok(()),
             Self::Zarr(store) => Ok(store.keep(simulation, checkpoint)?),
+            _ => Ok(()),
         }
     }
 
     /// A table of numbers has no place for what the result says about itself.
     fn end(&mut self, end: &End<'_>) -> Result<(), Failure> {
         match std::mem::replace(self, Self::Nowhere) {
-            Self::Nowhere | Self::NewCsv(..) => Ok(()),
+            Self::Nowhere | Self::NewCsv(..) | Self::NewStream(_) => Ok(()),
             Self::Zarr(mut store) => Ok(store.end(end)?),
             Self::Csv(writer) => writer.finish(end.simulation, end.ending),
+            Self::Stream(stream, _) => stream.finish(end.ending),
         }
     }
 }

@@ -10,6 +10,8 @@ use clap::Args;
 
 use crate::Drawn;
 use crate::failure::Failure;
+use crate::progress::waiting;
+use crate::request::some;
 use crate::terminal::say;
 
 const PAGES: &str = "\
@@ -39,7 +41,7 @@ pub(crate) struct Arguments {
     plot: Option<Vec<String>>,
 
     /// Largest number of frames, 5001 unless given; of more samples every n-th is taken
-    #[arg(long, value_name = "NUMBER", value_parser = some_frames)]
+    #[arg(long, value_name = "NUMBER", value_parser = some::<usize>)]
     frames: Option<usize>,
 
     #[command(flatten)]
@@ -64,13 +66,6 @@ struct Movie {
     /// Makes a movie instead (.gif), by the command of the Python package
     #[arg(long, conflicts_with = "plot")]
     gif: bool,
-}
-
-fn some_frames(text: &str) -> Result<usize, String> {
-    match text.parse() {
-        Ok(0) | Err(_) => Err("must be a whole number, 1 or more".into()),
-        Ok(number) => Ok(number),
-    }
 }
 
 impl Arguments {
@@ -114,7 +109,9 @@ pub(crate) fn replay(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> R
     };
     let wanted = |channel: &str| selection.wants(channel);
     let recorded = Recorded::open(&arguments.result, &wanted, selection.frames)?;
-    let film = film(&recorded, &selection, interrupted);
+    let film = waiting("drawing", interrupted, |stop| {
+        film(&recorded, &selection, stop)
+    });
     let film = film.map_err(|error| no_film(error, &arguments.result))?;
     let text = page(&film);
     fs::write(&output, &text).map_err(|source| Failure::File {

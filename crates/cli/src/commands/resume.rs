@@ -6,6 +6,7 @@ use chaindrive::Given;
 use chaindrive::record::{Stopped, take_over};
 use clap::Args;
 
+use super::output::Page;
 use super::run::{Telling, Terminal, concluded, not_run};
 use crate::failure::Failure;
 use crate::terminal::say;
@@ -56,5 +57,5 @@ pub(crate) fn resume(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> R
     let report = stopped.resume(&terminal);
     let report = report.map_err(|error| not_run(error, &scene))?;
     drop(terminal);
-    concluded(report, &scene, arguments.telling)
+    concluded(report, &scene, arguments.telling, Page::Out)
 }

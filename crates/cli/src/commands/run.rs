@@ -3,15 +3,18 @@
 use std::cell::RefCell;
 use std::path::PathBuf;
 
-use chaindrive::record::{Existing, take_over};
 use chaindrive::{Given, Onlooker, Report, RunError, Simulation, Stop, execute};
 use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::{Map, Value};
 
-use super::output::Target;
+use super::output::{ONE_DOCUMENT, Page, Place, Target};
+use crate::answer::answer;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::request::{RunArguments, SceneArguments};
-use crate::terminal::{print, say};
+use crate::terminal::say;
 
 /// Simulates a scene and ends with a summary.
 #[derive(Debug, Args)]
@@ -22,17 +25,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     run: RunArguments,
 
-    /// Where the samples go: a Zarr store (.zarr), readable while the run goes on, or a table (.csv)
-    #[arg(short, long, value_name = "OUT")]
-    output: Option<PathBuf>,
-
-    /// Replaces an earlier result of the same name
-    #[arg(long)]
-    overwrite: bool,
-
-    /// Takes over where another user, or a process that died, left the folder of a writer
-    #[arg(long)]
-    take_over: bool,
+    #[command(flatten)]
+    place: Place,
 
     /// Simulated time between two checkpoints in a Zarr result, such as "10 ms": killed at any moment, the run goes on
     /// from the last one by `chaindrive resume`. The samples are the same as without, to the last bit
@@ -46,6 +40,37 @@ pub(crate) struct Arguments {
 
     #[command(flatten)]
     telling: Telling,
+
+    /// Prints JSON in place of the page: how the run ended, warnings, and the attributes of the result
+    #[arg(long, conflicts_with_all = ["quiet", "numerics"])]
+    json: bool,
+}
+
+/// Answer of `chaindrive run --json`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct Answer {
+    /// File or embedded scene.
+    scene: String,
+    /// How it ended; of a run that is not complete, stderr says why.
+    status: Status,
+    /// Where the samples are; absent where they were not kept.
+    output: Option<PathBuf>,
+    /// How far the result can be trusted, and whatever else was noticed; empty where there is nothing to say.
+    warnings: Vec<String>,
+    /// All that the result says of itself, as in a store: numbers in SI units, texts, and lists of them.
+    attributes: Map<String, Value>,
+}
+
+/// How a run or a sweep ended.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Status {
+    /// It reached its end.
+    Complete,
+    /// It was stopped; what there is was kept.
+    Interrupted,
+    /// It failed, or some variants did; what there is was kept.
+    Failed,
 }
 
 /// How much is said of a result, and how strictly it is taken.
@@ -65,13 +90,19 @@ pub(super) struct Telling {
 }
 
 pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
-    let target = Target::of(arguments.output.as_deref())?;
+    let target = Target::of(&arguments.place)?;
+    let page = target.page();
+    if arguments.json && page == Page::Aside {
+        return Err(Failure::Argument(ONE_DOCUMENT.to_owned()));
+    }
     let mut request = arguments.run.apply(&arguments.scene.load(interrupted)?)?;
     let scene = request.scene.name().to_owned();
-    if !arguments.telling.quiet {
-        for note in arguments.scene.notes(&request.scene) {
-            say(note);
-        }
+    let notes = arguments.scene.notes(&request.scene);
+    for note in notes
+        .iter()
+        .filter(|_| !arguments.telling.quiet && !arguments.json)
+    {
+        say(note);
     }
     if let Some(every) = &arguments.checkpoint_every {
         target.for_checkpoints()?;
@@ -82,20 +113,28 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     if arguments.no_error {
         request = request.without_estimate();
     }
-    let existing = if arguments.overwrite {
-        Existing::Replace
-    } else {
-        Existing::Keep
-    };
-    if let Some(path) = arguments.output.as_ref().filter(|_| arguments.take_over) {
-        take_over(path)?;
-    }
-    let mut result = target.output(existing);
+    let mut result = target.output(arguments.place.existing()?);
     let terminal = Terminal::new(arguments.telling.quiet, interrupted);
     let report = execute(&request, &mut result, &terminal);
     let report = report.map_err(|error| not_run(error, &scene))?;
     drop(terminal);
-    concluded(report, &scene, arguments.telling)
+    if arguments.json {
+        let clashes = report.simulation.assembled().warnings.iter();
+        let warnings = notes.into_iter().chain(clashes.map(ToString::to_string));
+        answer(&Answer {
+            scene: scene.clone(),
+            status: match report.stop {
+                Stop::End => Status::Complete,
+                Stop::Interrupted => Status::Interrupted,
+                Stop::Failed(_) => Status::Failed,
+            },
+            output: arguments.place.output.clone(),
+            warnings: warnings.chain(report.verdict.warning()).collect(),
+            attributes: report.attributes.clone(),
+        })?;
+        return ended(report, &scene, arguments.telling.strict);
+    }
+    concluded(report, &scene, arguments.telling, page)
 }
 
 /// Why there is no report.
@@ -116,7 +155,12 @@ pub(super) fn not_run<E: std::error::Error + Into<Failure>>(
 }
 
 /// Says what came of a run.
-pub(super) fn concluded(report: Report, scene: &str, telling: Telling) -> Result<(), Failure> {
+pub(super) fn concluded(
+    report: Report,
+    scene: &str,
+    telling: Telling,
+    page: Page,
+) -> Result<(), Failure> {
     let Telling {
         quiet,
         numerics,
@@ -131,8 +175,13 @@ pub(super) fn concluded(report: Report, scene: &str, telling: Telling) -> Result
         say(format_args!("{scene}: {warning}"));
     }
     if !quiet && report.summary.samples > 0 {
-        print(told(&report, numerics))?;
+        page.tell(told(&report, numerics))?;
     }
+    ended(report, scene, strict)
+}
+
+/// How a run ended, as the exit code tells it.
+fn ended(report: Report, scene: &str, strict: bool) -> Result<(), Failure> {
     match report.stop {
         Stop::End if strict && report.verdict.is_distrusted() => Err(Failure::Distrusted {
             scene: scene.to_owned(),
@@ -163,6 +212,7 @@ impl<'a> Terminal<'a> {
 
 impl Onlooker for Terminal<'_> {
     fn stop(&self) -> bool {
+        self.progress.borrow_mut().rest();
         (self.interrupted)()
     }
 

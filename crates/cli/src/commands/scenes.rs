@@ -1,8 +1,12 @@
 //! `chaindrive resolve` and `diff`: what does a scene say in full, and what differs?
 
-use chaindrive::scene::diff as differences;
+use chaindrive::scene::{Difference, diff as differences};
 use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::{Map, Value};
 
+use crate::answer::answer;
 use crate::failure::Failure;
 use crate::request::{SceneArguments, load};
 use crate::terminal::print;
@@ -14,10 +18,36 @@ use crate::terminal::print;
 pub(crate) struct Resolve {
     #[command(flatten)]
     scene: SceneArguments,
+
+    /// Prints JSON: the scene, and the inputs that are assumed
+    #[arg(long)]
+    json: bool,
+}
+
+/// Answer of `chaindrive resolve --json`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct Resolved {
+    /// The scene in full, of the form that `chaindrive schema scene` prints.
+    scene: Map<String, Value>,
+    /// The same as TOML, with the source of every default in a comment.
+    text: String,
+    /// Inputs that nobody measured or gave, as `path = value`.
+    assumed: Vec<String>,
 }
 
 pub(crate) fn resolve(arguments: &Resolve, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
-    let full = arguments.scene.load(interrupted)?.resolved()?;
+    let scene = arguments.scene.load(interrupted)?;
+    let full = scene.resolved()?;
+    if arguments.json {
+        return answer(&Resolved {
+            scene: match full.json() {
+                Value::Object(scene) => scene,
+                _ => Map::new(),
+            },
+            text: full.text().to_owned(),
+            assumed: scene.assumed()?,
+        });
+    }
     print(full.text().trim_end())
 }
 
@@ -31,12 +61,26 @@ pub(crate) struct Diff {
     /// The other scene, preset or result
     #[arg(value_name = "SCENE|PRESET|RESULT")]
     second: String,
+
+    /// Prints JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Answer of `chaindrive diff --json`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct Differences {
+    /// Values that the scenes do not have in common; empty where nothing differs.
+    differences: Vec<Difference>,
 }
 
 pub(crate) fn diff(arguments: &Diff, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let read = |name: &str| load(name, interrupted);
     let (first, second) = (read(&arguments.first)?, read(&arguments.second)?);
     let found = differences(&first, &second)?;
+    if arguments.json {
+        return answer(&Differences { differences: found });
+    }
     for difference in &found {
         print(difference)?;
     }

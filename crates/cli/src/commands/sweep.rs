@@ -4,20 +4,23 @@ mod design;
 mod output;
 mod vary;
 
-use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use chaindrive::Request;
-use chaindrive::record::{Existing, take_over};
 use chaindrive::sweep::{Coordinator, Go, Sweep, SweepMemory, SweepStore, Tally};
 use clap::Args;
+use schemars::JsonSchema;
+use serde::Serialize;
 
-use super::output::Target;
+use super::output::{ONE_DOCUMENT, Page, Place, Target};
+use super::run::Status;
+use crate::answer::answer;
 use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::request::{RunArguments, SceneArguments};
-use crate::terminal::{print, say};
-use output::Table;
+use crate::request::{RunArguments, SceneArguments, some};
+use crate::stream::Stream;
+use crate::terminal::say;
+use output::{Table, columns, refuse_channels};
 
 const VALUES: &str = "\
 Values of --vary:
@@ -77,28 +80,80 @@ pub(crate) struct Arguments {
     run: RunArguments,
 
     /// Variants at a time; as many as there are cores unless given
-    #[arg(short, long, value_name = "N")]
-    jobs: Option<NonZeroUsize>,
+    #[arg(short, long, value_name = "N", value_parser = some::<usize>)]
+    jobs: Option<usize>,
 
-    /// Where the result goes: a Zarr store (.zarr), or a table with a row a variant (.csv)
-    #[arg(short, long, value_name = "OUT")]
-    output: Option<PathBuf>,
-
-    /// Replaces an earlier result of the same name
-    #[arg(long)]
-    overwrite: bool,
-
-    /// Takes over where another user, or a process that died, left the folder of a writer
-    #[arg(long)]
-    take_over: bool,
+    #[command(flatten)]
+    place: Place,
 
     /// Prints errors only, and a line if variants are not to be trusted
     #[arg(short, long)]
     quiet: bool,
+
+    /// Prints JSON in place of the report
+    #[arg(long, conflicts_with = "quiet")]
+    json: bool,
+}
+
+/// Answer of `chaindrive sweep --json`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub(super) struct Answer {
+    /// File or embedded scene.
+    scene: String,
+    /// How it ended.
+    status: Status,
+    /// Where the result is; absent where it was not kept.
+    output: Option<PathBuf>,
+    /// Paths that were varied, in the order of their dimensions.
+    swept: Vec<String>,
+    /// Number of variants.
+    variants: usize,
+    /// Variants that reached their end.
+    finished: usize,
+    /// Variants that failed.
+    failed: usize,
+    /// Variants that were not carried out.
+    open: usize,
+    /// Variants that contradict themselves, among those that reached their end.
+    distrusted: usize,
+    /// The first failures, with their variants.
+    failures: Vec<String>,
+    /// What speaks against the result; empty where nothing does.
+    warnings: Vec<String>,
+}
+
+impl Answer {
+    fn of(arguments: &Arguments, sweep: &Sweep, tally: &Tally) -> Self {
+        Self {
+            scene: sweep.scene().name().to_owned(),
+            status: match tally.failed {
+                _ if tally.open > 0 => Status::Interrupted,
+                0 => Status::Complete,
+                _ => Status::Failed,
+            },
+            output: arguments.place.output.clone(),
+            swept: sweep
+                .dimensions()
+                .iter()
+                .map(|it| it.path.clone())
+                .collect(),
+            variants: sweep.len(),
+            finished: tally.finished,
+            failed: tally.failed,
+            open: tally.open,
+            distrusted: tally.distrusted,
+            failures: tally.failures(sweep),
+            warnings: tally.warning(sweep).into_iter().collect(),
+        }
+    }
 }
 
 pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
-    let target = Target::of(arguments.output.as_deref())?;
+    let target = Target::of(&arguments.place)?;
+    let page = target.page();
+    if arguments.json && page == Page::Aside {
+        return Err(Failure::Argument(ONE_DOCUMENT.to_owned()));
+    }
     let Request { scene, record, .. } = arguments.run.apply(&arguments.scene.load(interrupted)?)?;
     // A scene suggests channels for a run; times the number of variants they are only kept on demand.
     let asked = arguments.run.asks_for_channels();
@@ -110,17 +165,10 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
         Sweep::new(&scene, &varied.collect::<Result<Vec<_>, _>>()?, &record)?
     };
     sweep.check_given(&[arguments.run.given(), arguments.scene.given()].concat())?;
-    let existing = if arguments.overwrite {
-        Existing::Replace
-    } else {
-        Existing::Keep
-    };
-    if let Some(path) = arguments.output.as_ref().filter(|_| arguments.take_over) {
-        take_over(path)?;
-    }
-    let jobs = arguments.jobs.map(NonZeroUsize::get);
+    let existing = arguments.place.existing()?;
+    let jobs = arguments.jobs;
     let mut progress = Progress::new(arguments.quiet);
-    let mut table = None;
+    let (mut table, mut stream) = (None, None);
     let mut coordinator: Box<dyn Coordinator> = match target {
         Target::Zarr(path) => {
             let go = || {
@@ -131,6 +179,11 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
         }
         Target::Csv(path) => {
             table = Some(Table::begin(&path, &sweep, existing)?);
+            Box::new(SweepMemory::new(&sweep, 1))
+        }
+        Target::Stream(format) => {
+            refuse_channels(Path::new("-"), &sweep)?;
+            stream = Some(format);
             Box::new(SweepMemory::new(&sweep, 1))
         }
         Target::Nowhere => Box::new(SweepMemory::new(&sweep, 1)),
@@ -155,7 +208,11 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     if let Some(table) = table.as_mut().filter(|_| tally.open < sweep.len()) {
         table.write(&sweep, coordinator.progress().outcomes, &tally.ending())?;
     }
-    conclude(arguments, &sweep, &tally, report)
+    if let Some(format) = stream {
+        let columns = columns(&sweep, &sweep.stack(coordinator.progress().outcomes));
+        Stream::begin(format, columns)?.finish(&tally.ending())?;
+    }
+    conclude(arguments, &sweep, &tally, (page, report))
 }
 
 /// Says what came of a sweep.
@@ -163,16 +220,20 @@ fn conclude(
     arguments: &Arguments,
     sweep: &Sweep,
     tally: &Tally,
-    report: String,
+    (page, report): (Page, String),
 ) -> Result<(), Failure> {
-    if !arguments.quiet {
-        print(report)?;
-    }
-    if let Some(warning) = tally.warning(sweep) {
-        say(warning);
-    }
-    for failure in tally.failures(sweep) {
-        say(failure);
+    if arguments.json {
+        answer(&Answer::of(arguments, sweep, tally))?;
+    } else {
+        if !arguments.quiet {
+            page.tell(report)?;
+        }
+        if let Some(warning) = tally.warning(sweep) {
+            say(warning);
+        }
+        for failure in tally.failures(sweep) {
+            say(failure);
+        }
     }
     match tally.failed {
         _ if tally.open > 0 => Err(Failure::Interrupted),

@@ -118,7 +118,7 @@ fn the_bench_refuses_what_it_cannot_run_or_write() {
         (
             &["--repeats", "0", "-o", "x"],
             2,
-            "repeats = 0, must be at least 1",
+            "must be a whole number, 1 or more",
         ),
         (&["-o", "nowhere/bench"], 3, "nowhere/bench.csv"),
         (&[], 3, "--overwrite"),

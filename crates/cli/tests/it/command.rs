@@ -246,7 +246,7 @@ fn messages_name_file_line_and_place() {
     fs::write(at.join("bad.toml"), "[chain]\npitch = \"12 rpm\"\n").unwrap();
     let (_, _, err) = run(at, &["check", "bad.toml"]);
     assert!(
-        err.contains("bad.toml:2: chain.pitch: `12 rpm` is an angular speed"),
+        err.contains("bad.toml:2:9: chain.pitch: `12 rpm` is an angular speed"),
         "{err}"
     );
     let (_, _, err) = run(at, &["run", "spinning_ring", "--record", "link_tensoin"]);

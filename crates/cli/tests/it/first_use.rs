@@ -201,7 +201,7 @@ fn lines_are_those_of_the_file() {
     let (code, _, err) = run(&wrong, &[&arguments[..], &more].concat());
     assert_eq!(code, 2, "{err}");
     assert!(
-        err.starts_with(&format!("scene.toml:{lines}: route.adjust.name")),
+        err.starts_with(&format!("scene.toml:{lines}:38: route.adjust.name")),
         "{err}"
     );
     let many = [

@@ -4,6 +4,8 @@ mod bench;
 mod command;
 mod first_use;
 mod interrupt;
+mod mistakes;
+mod misuse;
 mod replay;
 mod resume;
 mod same_run;

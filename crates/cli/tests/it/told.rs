@@ -1,45 +1,8 @@
-//! Messages, the summary of a run and a description, word for word.
+//! The summary of a run and a description, word for word.
 //!
 //! After a change that is meant: `INSTA_UPDATE=always cargo test -p chaindrive-cli --test it told`, and look at what git shows.
 
-use std::fmt::Write as _;
-use std::fs;
-
 use crate::command::{folder, run};
-
-/// Typing errors, each with its message and exit code.
-#[test]
-fn mistakes() {
-    let folder = folder();
-    fs::write(
-        folder.path().join("wrong.toml"),
-        "defaults = \"0.2\"\n\n[chain]\npitch = \"8.5 mmm\"\nlinks = 1.5\n\n[[sprockets]]\nname = \"a\"\nteeth = \"many\"\n",
-    )
-    .unwrap();
-    let lines = [
-        "run nowhere.toml",
-        "run marine_engin",
-        "check wrong.toml",
-        "run marine_two_sprockets --until -1ms",
-        "run marine_two_sprockets --until 1ms --method verlt",
-        "run marine_two_sprockets --until 1ms --step 0s",
-        "run marine_two_sprockets --until 1ms --record tension",
-        "run marine_two_sprockets --until 1ms --set chain.pich=9mm",
-        "run marine_two_sprockets --until 1ms --set sprockets.crank.teeth=0",
-        "run marine_two_sprockets --until 1ms -o result.txt",
-        "run marine_two_sprockets --until 1ms --checkpoint-every 1ms",
-        "resume nothing.zarr",
-        "sweep marine_two_sprockets --until 1ms",
-        "replay nothing.zarr",
-    ];
-    let mut told = String::new();
-    for line in lines {
-        let arguments: Vec<&str> = line.split(' ').collect();
-        let (code, _, err) = run(folder.path(), &arguments);
-        writeln!(told, "$ chaindrive {line}\n{err}exit code {code}\n").unwrap();
-    }
-    insta::assert_snapshot!(told);
-}
 
 #[test]
 fn the_summary_of_a_run() {

@@ -18,7 +18,7 @@ use crate::zarr::{
 #[expect(missing_docs, reason = "each message names its fields")]
 pub enum ReadError {
     /// Nothing is there.
-    #[error("{}: there is nothing of this name", .path.display())]
+    #[error("{}: there is nothing of this name; check the path", .path.display())]
     Missing { path: PathBuf },
 
     /// It is something else.

@@ -88,7 +88,7 @@ impl Stopped {
     /// [`ResumeError`]: somebody writes it, it is no result, it is complete, or it has no checkpoint that could be used.
     pub fn open(path: &Path, until: Option<&Given>) -> Result<Self, ResumeError> {
         if !path.exists() {
-            let why = "there is nothing of this name".to_owned();
+            let why = "there is nothing of this name; check the path".to_owned();
             let path = path.to_owned();
             return Err(ResumeError::NoCheckpoint { path, why });
         }

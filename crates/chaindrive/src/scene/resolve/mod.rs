@@ -79,15 +79,15 @@ pub(crate) fn refuse_unknown_chains(tree: &Node, problems: &mut Problems) {
     let mut look = |chain: &Node, path: String| {
         if let Some(Node {
             value: Value::Text(name),
-            line,
+            place,
             ..
         }) = chain.get("type")
             && let Err(problem) = chain_named(name)
         {
-            let line = *line;
+            let place = *place;
             problems.push(Problem {
                 path,
-                line,
+                place,
                 ..problem
             });
         }
@@ -380,16 +380,16 @@ impl Findings<'_> {
     fn refuse(&mut self, path: &str, message: impl Into<String>) {
         let path = &self.at(path);
         self.problems.push_with(|| {
-            let (path, line) = self.tree.locate(path);
-            Problem::new(&path, line, message)
+            let (path, place) = self.tree.locate(path);
+            Problem::new(&path, place, message)
         });
     }
 
     fn refuse_with(&mut self, path: &str, message: impl Into<String>, hint: impl Into<String>) {
         let path = &self.at(path);
         self.problems.push_with(|| {
-            let (path, line) = self.tree.locate(path);
-            Problem::new(&path, line, message).hint(hint)
+            let (path, place) = self.tree.locate(path);
+            Problem::new(&path, place, message).hint(hint)
         });
     }
 

@@ -94,7 +94,8 @@ const CRATES: [Storeys; 6] = [
         folder: "cli",
         layers: &[
             &["failure", "suggested"],
-            &["csv", "progress", "request", "terminal"],
+            &["complaint", "csv", "progress", "request", "terminal"],
+            &["answer", "stream"],
             &["commands"],
         ],
         exceptions: &[],

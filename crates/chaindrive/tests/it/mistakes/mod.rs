@@ -35,7 +35,7 @@ pub(crate) fn all_found(
         let error = fails(&good.replacen(old, new, 1));
         let hit = |problem: &Problem| {
             is_at(&problem.path, path)
-                && problem.line == Some(*line)
+                && problem.place.map(|place| place.line) == Some(*line)
                 && problem.to_string().contains(fragment)
         };
         if !error.problems.iter().any(hit) || error.problems.len() > most {

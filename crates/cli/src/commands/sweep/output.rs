@@ -6,10 +6,11 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use chaindrive::record::{Ending, Existing};
-use chaindrive::sweep::{Outcome, Progress, Stacked, Sweep};
+use chaindrive::sweep::{Coordinate, Outcome, Progress, Stacked, Sweep};
 
 use crate::csv::{Claimed, VARIANT, claim, failed, incomplete, named};
 use crate::failure::Failure;
+use crate::stream::{Cells, Column};
 
 /// Wall time between two writes while the sweep goes on.
 const WRITE_EVERY: Duration = Duration::from_secs(5);
@@ -33,12 +34,7 @@ pub(super) struct Table {
 impl Table {
     /// Claims the place of a table.
     pub(super) fn begin(path: &Path, sweep: &Sweep, existing: Existing) -> Result<Self, Failure> {
-        if !sweep.record().is_empty() {
-            return Err(Failure::Argument(format!(
-                "{}: a table has no place for the channels of --record; take a .zarr store",
-                path.display()
-            )));
-        }
+        refuse_channels(path, sweep)?;
         Ok(Self {
             claimed: claim(path, existing)?,
             running: false,
@@ -107,43 +103,80 @@ impl Drop for Table {
     }
 }
 
+/// Refuses channels, which fill more than a row a variant.
+pub(super) fn refuse_channels(path: &Path, sweep: &Sweep) -> Result<(), Failure> {
+    if sweep.record().is_empty() {
+        return Ok(());
+    }
+    Err(Failure::Argument(format!(
+        "{}: a table has no place for the channels of --record; take a .zarr store",
+        path.display()
+    )))
+}
+
 fn fill(file: File, sweep: &Sweep, stacked: &Stacked, ending: &Ending) -> io::Result<()> {
     let mut table = csv::Writer::from_writer(file);
-    let mut heading = vec![VARIANT.to_owned()];
-    let swept = sweep.dimensions().iter();
-    heading.extend(swept.map(|it| named(&it.name, it.unit)));
-    for it in &stacked.quantities {
-        let (name, unit) = (it.quantity.name(), it.unit.as_str());
-        let labels = it.quantity.along().and_then(|along| {
-            let mut labels = stacked.labels.iter();
-            labels.find(|(known, _)| known == along)
-        });
-        match labels {
-            None => heading.push(named(name, Some(unit))),
-            Some((_, labels)) => {
-                let labels = (0..labels.len()).map(|at| labels.text(at));
-                heading.extend(labels.map(|label| named(&format!("{name}[{label}]"), Some(unit))));
-            }
-        }
-    }
-    heading.extend(stacked.texts.iter().map(|it| it.name.to_owned()));
-    table.write_record(heading)?;
+    let columns = columns(sweep, stacked);
+    table.write_record(columns.iter().map(|it| named(&it.name, it.unit.as_deref())))?;
     for index in 0..sweep.len() {
-        let mut row = vec![index.to_string()];
-        let places = sweep.dimensions().iter().zip(sweep.indices(index));
-        row.extend(places.map(|(dimension, at)| dimension.values.text(at)));
-        for it in &stacked.quantities {
-            let width = it.values.len() / sweep.len();
-            let values = &it.values[index * width..][..width];
-            // The shortest digits that read back to the same number.
-            row.extend(values.iter().map(|value| format!("{value:?}")));
-        }
-        row.extend(stacked.texts.iter().map(|it| it.texts[index].clone()));
-        table.write_record(row)?;
+        table.write_record(columns.iter().map(|it| it.cells.text(index)))?;
     }
     let mut file = table
         .into_inner()
         .map_err(csv::IntoInnerError::into_error)?;
     write!(file, "{}", incomplete(ending).unwrap_or_default())?;
     file.sync_all()
+}
+
+/// The table of a sweep, with a row a variant.
+pub(super) fn columns(sweep: &Sweep, stacked: &Stacked) -> Vec<Column> {
+    let variants = i64::try_from(sweep.len()).unwrap_or(i64::MAX);
+    let mut columns = vec![Column {
+        name: VARIANT.to_owned(),
+        unit: None,
+        cells: Cells::Whole((0..variants).collect()),
+    }];
+    let indices: Vec<Vec<usize>> = (0..sweep.len()).map(|it| sweep.indices(it)).collect();
+    for (which, dimension) in sweep.dimensions().iter().enumerate() {
+        let at = indices.iter().map(|indices| indices[which]);
+        columns.push(Column {
+            name: dimension.name.clone(),
+            unit: dimension.unit.map(str::to_owned),
+            cells: match &dimension.values {
+                Coordinate::Numbers(numbers) => Cells::Numbers(at.map(|at| numbers[at]).collect()),
+                Coordinate::Whole(numbers) => Cells::Whole(at.map(|at| numbers[at]).collect()),
+                Coordinate::Texts(texts) => Cells::Texts(at.map(|at| texts[at].clone()).collect()),
+            },
+        });
+    }
+    for it in &stacked.quantities {
+        let (name, width) = (it.quantity.name(), it.values.len() / sweep.len());
+        let labels = it.quantity.along().and_then(|along| {
+            let mut labels = stacked.labels.iter();
+            labels.find(|(known, _)| known == along)
+        });
+        columns.extend((0..width).map(|entry| {
+            Column {
+                name: match labels {
+                    None => name.to_owned(),
+                    Some((_, labels)) => format!("{name}[{}]", labels.text(entry)),
+                },
+                unit: Some(it.unit.clone()),
+                cells: Cells::Numbers(
+                    it.values
+                        .iter()
+                        .skip(entry)
+                        .step_by(width)
+                        .copied()
+                        .collect(),
+                ),
+            }
+        }));
+    }
+    columns.extend(stacked.texts.iter().map(|it| Column {
+        name: it.name.to_owned(),
+        unit: None,
+        cells: Cells::Texts(it.texts.clone()),
+    }));
+    columns
 }

@@ -1,0 +1,174 @@
+"""What the command prints for programs: JSON of the form that its schema says, and tables."""
+
+import io
+import json
+import subprocess
+import sys
+from typing import Any
+
+import jsonschema
+import pytest
+
+import chaindrive as cd
+
+SHORT = [
+    "--until",
+    "0.1 ms",
+    "--every",
+    "0.1 ms",
+    "--method",
+    "auto",
+    "--no-error",
+    "--run-in",
+    "0",
+]
+
+
+def command(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "chaindrive", *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def closed(schema: Any) -> Any:
+    """The schema, refusing keys that it does not name."""
+    if isinstance(schema, dict):
+        schema = {key: closed(value) for key, value in schema.items()}
+        if "properties" in schema:
+            schema.setdefault("additionalProperties", False)
+        return schema
+    return [closed(it) for it in schema] if isinstance(schema, list) else schema
+
+
+def schema(of: str) -> Any:
+    return closed(json.loads(command("schema", of).stdout))
+
+
+def answer(*arguments: str) -> Any:
+    done = command(*arguments, "--json")
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    document = json.loads(done.stdout)
+    jsonschema.validate(document, schema(arguments[0]))
+    return document
+
+
+@pytest.mark.parametrize("preset", cd.scenes.presets())
+def test_answers_about_every_preset_are_of_the_form_of_their_schema(preset):
+    checked = answer("check", preset)["scenes"]
+    assert [it["scene"] for it in checked] == [preset]
+    assert checked[0]["sound"]["degrees_of_freedom"] > 0
+    resolved = answer("resolve", preset)
+    jsonschema.validate(resolved["scene"], cd.schema())
+    ran = answer("run", preset, *SHORT)
+    assert ran["status"] == "complete"
+    assert ran["attributes"]["scene_name"] == preset
+    described = answer("describe", preset, "--method", "auto", "--until", "1 ms")
+    assert ("chain" in described) != ("chains" in described)
+    if command("design", preset).returncode == 0:
+        assert answer("design", preset)["chains"]
+
+
+def test_answers_about_what_there_is():
+    names = [it["name"] for it in answer("channels")["channels"]]
+    assert names == list(cd.channels())
+    chains = answer("catalogue")["chains"]
+    (one,) = answer("catalogue", "80")["chains"]
+    assert one in chains
+    assert one["name"] == "16A-1"
+    assert one["numbers"]["pitch"]["value"] == pytest.approx(0.0254)
+
+
+def test_differences():
+    assert answer("diff", "marine_engine", "marine_engine") == {"differences": []}
+    differences = answer("diff", "marine_engine", "marine_engine_bare")["differences"]
+    assert all(it["first"] != it["second"] for it in differences)
+    assert len(differences) > 3
+
+
+SWEEP = ["sweep", "spinning_ring", "--vary", "chain.links=20,24", *SHORT[:6]]
+
+
+def test_a_sweep(tmp_path):
+    swept = answer(*SWEEP, "-o", str(tmp_path / "ring.csv"))
+    assert (swept["status"], swept["variants"], swept["finished"]) == ("complete", 2, 2)
+    assert swept["swept"] == ["chain.links"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "place"),
+    [
+        (["run", "marine_engin"], 2, "marine_engin"),
+        (["check", "wrong.toml"], 2, None),
+        (["run", "wrong.toml"], 2, "wrong.toml"),
+        (["run", "marine_engine", "--method", "verlt"], 2, "arguments"),
+        (["describe", "marine_engine", "--set", "links=80"], 2, "--set links"),
+        (["catalogue", "16b1"], 2, None),
+    ],
+)
+def test_a_failure_is_one_document_too(arguments, code, place, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "wrong.toml").write_text('[chain]\npitch = "12 rpm"\n', encoding="utf-8")
+    done = command(*arguments, "--json")
+    assert done.returncode == code
+    document = json.loads(done.stderr)
+    jsonschema.validate(document, schema("error"))
+    assert document["error"].get("where") == place
+    assert document["error"]["exit_code"] == code
+    if place == "wrong.toml":
+        first = document["error"]["problems"][0]
+        assert (first["path"], first["line"]) == ("title", 1) or first["path"]
+        pitch = [it for it in document["error"]["problems"] if it["path"] == "chain.pitch"]
+        assert [(it["line"], it["column"]) for it in pitch] == [(2, 9)]
+
+
+TABLE = ["run", "spinning_ring", "--until", "2 ms", "--every", "1 ms", "--step", "10 us"]
+RECORD = ["--record", "energy_kinetic,link_tension"]
+
+
+def test_a_table_on_standard_output_is_that_of_a_file(tmp_path):
+    done = command(*TABLE, *RECORD, "-o", "-")
+    assert done.returncode == 0, done.stderr
+    assert command(*TABLE, *RECORD, "-o", str(tmp_path / "ring.csv"), "-q").returncode == 0
+    assert done.stdout == (tmp_path / "ring.csv").read_text(encoding="utf-8")
+    assert "verdict" in done.stderr
+    assert command(*TABLE, "-o", "-", "--json").returncode == 2
+    assert command(*TABLE, "-o", "x.csv", "--format", "arrow").returncode == 2
+
+
+def stream(*arguments: str) -> Any:
+    ipc = pytest.importorskip("pyarrow.ipc")
+    whole = [sys.executable, "-m", "chaindrive", *arguments, "-o", "-", "--format", "arrow"]
+    done = subprocess.run(whole, capture_output=True, check=True)
+    return ipc.open_stream(io.BytesIO(done.stdout)).read_all()
+
+
+def test_arrow_has_the_numbers_of_the_table_and_their_units(tmp_path):
+    table = stream(*TABLE, *RECORD)
+    text = command(*TABLE, *RECORD, "-o", "-").stdout.splitlines()
+    headings = text[0].split(",")
+    assert [
+        f"{field.name} [{field.metadata[b'unit'].decode()}]" for field in table.schema
+    ] == headings
+    rows = [[float(cell) for cell in line.split(",")] for line in text[1:]]
+    assert [list(row.values()) for row in table.to_pylist()] == rows
+
+
+def test_a_sweep_on_standard_output():
+    table = stream(*SWEEP)
+    assert table.column("variant").to_pylist() == [0, 1]
+    assert table.column("links").to_pylist() == [20, 24]
+    text = command(*SWEEP, "-o", "-").stdout.splitlines()
+    assert len(text) == 3
+    assert len(text[0].split(",")) == table.num_columns
+
+
+def test_nothing_is_coloured(monkeypatch):
+    for name in ("CLICOLOR_FORCE", "FORCE_COLOR"):
+        monkeypatch.setenv(name, "1")
+    for arguments in (["--help"], ["run", "x"], ["rnu"], ["check", "spinning_ring"]):
+        done = command(*arguments)
+        assert "\x1b" not in done.stdout + done.stderr
