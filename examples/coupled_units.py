@@ -188,6 +188,8 @@ def draw(steps: tuple[float, ...], table: dict[str, np.ndarray], path: Path) -> 
     right.axhline(0.1, color="0.7", linewidth=1)
     right.set(xlabel="exchange step [µs]", ylabel="mean span tensions, largest error [%]")
     for axes in (left, right):
+        axes.set_xticks([1e6 * step for step in steps], [f"{1e6 * step:.0f}" for step in steps])
+        axes.minorticks_off()
         axes.grid(alpha=0.3)
     figure.savefig(path, dpi=110)
 
