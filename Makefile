@@ -124,7 +124,8 @@ WHEEL_TARGET = $(shell rustc -vV | sed -n 's/^host: //p')
 wheels: $(VENV)/wheels-ready ## Build a wheel for Linux and the source distribution in dist, and try them
 	rm -rf dist
 	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/cargo-zigbuild zigbuild --release --quiet -p chaindrive-fmu --target $(WHEEL_TARGET).2.17
-	cp target/$(WHEEL_TARGET)/release/libchaindrive_fmu.so python/chaindrive/
+	mkdir -p python/chaindrive/library
+	cp target/$(WHEEL_TARGET)/release/libchaindrive_fmu.so python/chaindrive/library/
 	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/maturin build --release --sdist --zig --compatibility manylinux2014 --out dist
 	$(BIN)/python tests/wheels/fresh.py dist
 
@@ -172,7 +173,8 @@ $(VENV)/installed: $(VENV)/ready $(SOURCES)
 	@echo "Building the core in release: some four minutes on two cores the first time, and what changed later on."
 	@# The library of functional mock-up units; with the bindings, so that both are of the same compiled crates.
 	cargo build --release --quiet -p chaindrive-python -p chaindrive-fmu
-	cp $(addprefix target/release/,$(FMU_LIBRARY)) python/chaindrive/
+	mkdir -p python/chaindrive/library
+	cp $(addprefix target/release/,$(FMU_LIBRARY)) python/chaindrive/library/
 	$(BIN)/maturin build --release --quiet --interpreter $(BIN)/python --out target/wheels
 	$(PIP) --force-reinstall --no-deps target/wheels/chaindrive-*.whl
 	@mv $@.begun $@

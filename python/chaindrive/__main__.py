@@ -20,7 +20,7 @@ if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
 
 import sys  # noqa: E402
 
-from chaindrive import _core, fmu  # noqa: E402
+from chaindrive import _core  # noqa: E402
 from chaindrive.signals import hear  # noqa: E402
 
 
@@ -46,7 +46,9 @@ def main() -> int:
         hear()
         arguments = ["chaindrive", *sys.argv[1:]]
         if arguments[1:2] == ["fmu"] and not any(it.startswith("--library") for it in arguments):
-            arguments += ["--library", str(fmu.LIBRARY)]
+            from chaindrive.fmu import LIBRARY
+
+            arguments += ["--library", str(LIBRARY)]
         drawn = _core._drawn(arguments)
         return _core._cli(arguments) if drawn is None else _draw(arguments[1], *drawn)
     except KeyboardInterrupt:

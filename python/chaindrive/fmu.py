@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["LIBRARY", "export"]
 
-LIBRARY = Path(__file__).with_name(_core.fmu_library())
+LIBRARY = Path(__file__).with_name("library") / _core.fmu_library()
 """Library of the units, prebuilt for this platform."""
 
 
