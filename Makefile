@@ -123,7 +123,7 @@ WHEEL_TARGET = $(shell rustc -vV | sed -n 's/^host: //p')
 
 wheels: $(VENV)/wheels-ready ## Build a wheel for Linux and the source distribution in dist, and try them
 	rm -rf dist
-	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/cargo-zigbuild zigbuild --release --quiet -p chaindrive-fmu --target $(WHEEL_TARGET).2.17
+	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/cargo-zigbuild zigbuild --release --quiet -p chaindrive-python -p chaindrive-fmu --target $(WHEEL_TARGET).2.17
 	mkdir -p python/chaindrive/library
 	cp target/$(WHEEL_TARGET)/release/libchaindrive_fmu.so python/chaindrive/library/
 	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/maturin build --release --sdist --zig --compatibility manylinux2014 --out dist

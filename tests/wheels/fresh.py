@@ -22,6 +22,8 @@ assert "site-packages" in cd.__file__, cd.__file__
 run = cd.simulate(cd.scenes.industrial_16b(), until=0.01, every=1e-3, record="span_tension")
 tension = run["span_tension"]
 assert tension.shape[0] == 11 and bool((tension > 0).any()), tension
+unit = cd.scenes.industrial_16b().fmu("drive.fmu", run=False)
+assert unit.stat().st_size > 1_000_000, unit
 print(f"chaindrive {cd.__version__} on Python {sys.version.split()[0]}: simulates")
 """
 

@@ -40,7 +40,7 @@ use crate::{Run, SimulationError};
 pub struct Simulation {
     moving: Moving,
     /// The state before the last step, when that went beyond the time read: a change at that time begins from here.
-    before: Option<Box<Moving>>,
+    before: Option<Box<Before>>,
     /// Samples that were taken before anybody asked for them.
     ahead: VecDeque<Sample>,
     /// Time of the last sample or reading \[s\].
@@ -88,6 +88,7 @@ use live::Changes;
 pub use live::Control;
 pub use many::step_many;
 pub(crate) use sample::Sample;
+use snapshot::Before;
 pub use snapshot::{Snapshot, SnapshotError};
 pub use view::View;
 

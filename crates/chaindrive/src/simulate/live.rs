@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use chaindrive_mechanics::{Assembled, Course, Input, Observation};
 
+use super::snapshot::Before;
 use super::{Moving, STEPS_PER_LOOK, Simulation};
 use crate::patience::LOOK;
 use crate::{Channel, SimulationError, Stepping};
@@ -124,7 +125,7 @@ impl Simulation {
                 if changes == Changes::None {
                     self.before = None;
                 } else if moving.state.t + moving.stepper.next_step() >= time {
-                    self.before = Some(Box::new(moving.clone()));
+                    self.before = Some(Box::new(Before::of(moving)));
                 }
                 moving.keep_forces_for(time);
                 moving.step()?;
@@ -171,7 +172,7 @@ impl Simulation {
         checked.map_err(|error| control.refused(error.to_string()))?;
         if time < self.time() {
             match self.before.take() {
-                Some(before) => self.moving = *before,
+                Some(before) => self.go_back(*before)?,
                 None => {
                     return Err(SimulationError::Past {
                         time,
@@ -183,7 +184,7 @@ impl Simulation {
         let time = self.zero() + time;
         // Somebody may yet go back behind this plan.
         if let Some(before) = &mut self.before {
-            before.plan(time, input, course)?;
+            before.plan(time, input, course);
         }
         self.moving.plan(time, input, course)
     }
@@ -217,7 +218,12 @@ impl Moving {
     }
 
     /// Plans a change, and makes it if it is due.
-    fn plan(&mut self, time: f64, input: Input, course: Course) -> Result<(), SimulationError> {
+    pub(super) fn plan(
+        &mut self,
+        time: f64,
+        input: Input,
+        course: Course,
+    ) -> Result<(), SimulationError> {
         let Self {
             system,
             state,

@@ -55,6 +55,7 @@ impl Simulation {
         };
         self.go_to(time, changes, stop)?;
         let before = self.before.take();
+        let before = before.map(|it| self.as_before(&it).expect("the memory is of this drive"));
         let start = before.map(|it| {
             let mut system = it.system;
             // Whoever begins there says what is logged.

@@ -3,15 +3,15 @@
 use std::fmt::{self, Write};
 use std::sync::Arc;
 
-use chaindrive_integrate::{IntegrationError, State, StepperMemory};
+use chaindrive_integrate::{IntegrationError, SecondOrderSystem, State, StepperMemory};
 use chaindrive_mechanics::{
-    ContactEvent, Energy, Impact, MemoryError, Observation, Record, SystemMemory,
+    ContactEvent, Course, Energy, Impact, Input, MemoryError, Observation, Record, SystemMemory,
 };
 use serde::{Deserialize, Serialize};
 
 use super::{Moving, Simulation};
-use crate::SealError;
 use crate::seal::{Sealed, opened, sealed};
+use crate::{SealError, SimulationError};
 
 /// A simulation as it was at a moment, to the last bit: contacts, windows and the time stepping with its memory.
 ///
@@ -39,7 +39,7 @@ pub struct Snapshot {
     /// Of the simulation, see [`Simulation::fingerprint`].
     fingerprint: u32,
     moving: Remembered,
-    before: Option<Remembered>,
+    before: Option<Before>,
     /// Time reached \[s\].
     time: f64,
     read: f64,
@@ -56,6 +56,32 @@ struct Remembered {
     stepper: StepperMemory<Record>,
     ended: [Vec<ContactEvent>; 2],
     struck: [Vec<Impact>; 2],
+}
+
+/// The drive before the last step: the way back for a change at a time within it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Before {
+    moving: Remembered,
+    /// Time of the first event behind it \[s\].
+    event: f64,
+    /// What was planned since then.
+    planned: Vec<(f64, Input, Course)>,
+}
+
+impl Before {
+    /// The drive as it stands now.
+    pub(super) fn of(moving: &Moving) -> Self {
+        Self {
+            moving: moving.remembered(),
+            event: moving.system.next_event(moving.state.t),
+            planned: Vec::new(),
+        }
+    }
+
+    /// Takes note of a plan, which going back does not undo.
+    pub(super) fn plan(&mut self, time: f64, input: Input, course: Course) {
+        self.planned.push((time, input, course));
+    }
 }
 
 /// Why a simulation cannot go back to a snapshot.
@@ -107,7 +133,7 @@ impl Simulation {
         Snapshot {
             fingerprint: self.fingerprint(),
             moving: self.moving.remembered(),
-            before: self.before.as_ref().map(|before| before.remembered()),
+            before: self.before.as_deref().cloned(),
             time: self.time(),
             read: self.read,
             next: self.next,
@@ -125,15 +151,41 @@ impl Simulation {
             return Err(SnapshotError::Other);
         }
         let moving = self.recalled(&snapshot.moving)?;
-        let before = snapshot.before.as_ref();
-        let before = before.map(|before| self.recalled(before).map(Box::new));
-        self.before = before.transpose()?;
+        if let Some(before) = &snapshot.before {
+            self.recalled(&before.moving)?;
+        }
+        self.before = snapshot.before.clone().map(Box::new);
         self.moving = moving;
         self.ahead.clear();
         self.read = snapshot.read;
         self.next = snapshot.next;
         self.observation.clone_from(&snapshot.observation);
         self.start_energy = snapshot.start_energy;
+        Ok(())
+    }
+
+    /// The drive as it stood before the last step.
+    pub(super) fn as_before(&self, before: &Before) -> Result<Moving, SnapshotError> {
+        self.recalled(&before.moving)
+    }
+
+    /// Goes back to before the last step, with what was planned since then.
+    pub(super) fn go_back(&mut self, before: Before) -> Result<(), SimulationError> {
+        let Before {
+            moving: then,
+            event,
+            planned,
+        } = before;
+        let own = "the memory is of this drive";
+        if event > self.moving.state.t {
+            // Nothing was set in that step, and all else is memory.
+            self.moving.take_back(then).expect(own);
+        } else {
+            self.moving = self.recalled(&then).expect(own);
+        }
+        for (time, input, course) in planned {
+            self.moving.plan(time, input, course)?;
+        }
         Ok(())
     }
 
@@ -171,6 +223,23 @@ impl Simulation {
 }
 
 impl Moving {
+    /// Goes back to what it remembered, since when nothing was set.
+    fn take_back(&mut self, then: Remembered) -> Result<(), SnapshotError> {
+        let Remembered {
+            system,
+            state,
+            stepper,
+            ended,
+            struck,
+        } = then;
+        self.system.remember(system)?;
+        self.stepper.remember(&self.system, &state, stepper)?;
+        self.state = state;
+        self.ended = ended;
+        self.struck = struck;
+        Ok(())
+    }
+
     fn remembered(&self) -> Remembered {
         Remembered {
             system: self.system.memory(),

@@ -162,6 +162,38 @@ fn scattered(k: u32) -> f64 {
     (f64::from(k) * 0.618_033_988_749_895).fract()
 }
 
+/// The step that is taken back ends where a plan has set something: both changes are made as if they had been planned from the beginning.
+#[test]
+fn a_change_takes_back_the_one_behind_it() {
+    let scene = two_free();
+    let [turned, pushed] = [Control::Speed, Control::Torque].map(|kind| on("driver", kind));
+    let (at, later, end) = (3.1415e-4, 3.1425e-4, 1e-3);
+    for stepping in METHODS {
+        let mut planned = start(&scene, stepping);
+        planned.set_at(at, &pushed, 30.0).unwrap();
+        planned.set_at(later, &turned, 44.0).unwrap();
+        planned.advance_to(end).unwrap();
+        let mut late = start(&scene, stepping);
+        late.set_at(later, &turned, 44.0).unwrap();
+        late.advance_to(at).unwrap();
+        assert!(late.time() >= at, "{stepping:?}");
+        let snapshot = late.snapshot();
+        late.set(&pushed, 30.0).unwrap();
+        late.advance_to(end).unwrap();
+        let mut another = start(&scene, stepping);
+        another.restore(&snapshot).unwrap();
+        another.set(&pushed, 30.0).unwrap();
+        another.advance_to(end).unwrap();
+        for other in [&late, &another] {
+            assert_eq!(
+                bits(other.observation()),
+                bits(planned.observation()),
+                "{stepping:?}"
+            );
+        }
+    }
+}
+
 /// From torque to speed and back a hundred times, at times that no step knows. By the reference method the ledger closes to 1e-5 of the
 /// energy moved; by Verlet's it errs by the square of the step. The same calls in pieces, and on another simulation after snapshots, are
 /// the same to the bit.
