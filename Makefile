@@ -126,7 +126,9 @@ wheels: $(VENV)/wheels-ready ## Build a wheel for Linux and the source distribut
 	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/cargo-zigbuild zigbuild --release --quiet -p chaindrive-python -p chaindrive-fmu --target $(WHEEL_TARGET).2.17
 	mkdir -p python/chaindrive/library
 	cp target/$(WHEEL_TARGET)/release/libchaindrive_fmu.so python/chaindrive/library/
-	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/maturin build --release --sdist --zig --compatibility manylinux2014 --out dist
+	@# Apart: a wheel that is made of the source distribution has no library of units.
+	$(BIN)/maturin sdist --out dist
+	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/maturin build --release --zig --target $(WHEEL_TARGET) --compatibility manylinux2014 --out dist
 	$(BIN)/python tests/wheels/fresh.py dist
 
 .PHONY: browser
