@@ -325,7 +325,7 @@ struct AsInScenes {
     /// The chain, where there is one only.
     #[serde(skip_serializing_if = "Option::is_none")]
     chain: Option<ChainFacts>,
-    /// How it was fitted; absent when it does not run around sprockets.
+    /// Fit to its route; absent for a chain around no sprockets.
     #[serde(skip_serializing_if = "Option::is_none")]
     closing: Option<Closing>,
     /// The chains, where there are several.

@@ -62,7 +62,7 @@ impl Place {
 const WIDEST: usize = 120;
 const BEFORE: usize = 30;
 
-/// Where the lines of a text begin.
+/// Beginnings of the lines of a text.
 pub(crate) struct Lines<'t> {
     text: &'t str,
     starts: Vec<usize>,

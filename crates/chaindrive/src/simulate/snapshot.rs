@@ -64,7 +64,7 @@ pub(super) struct Before {
     moving: Remembered,
     /// Time of the first event behind it \[s\].
     event: f64,
-    /// What was planned since then.
+    /// Plans made since then.
     planned: Vec<(f64, Input, Course)>,
 }
 

@@ -40,7 +40,7 @@ struct SceneEntry {
     /// Contents of a sound scene; absent for a wrong one.
     #[serde(skip_serializing_if = "Option::is_none")]
     sound: Option<Contents>,
-    /// What is wrong; absent for a sound scene.
+    /// Mistakes; absent for a sound scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<Trouble>,
 }

@@ -46,7 +46,7 @@ pub(super) struct ChannelList {
     channels: Vec<ChannelEntry>,
 }
 
-/// What a run can record.
+/// A channel of runs.
 #[derive(Debug, Serialize, JsonSchema)]
 struct ChannelEntry {
     /// Name, for `--record` and in results.
@@ -67,9 +67,9 @@ struct ChannelEntry {
 enum Recorded {
     /// In every run.
     Always,
-    /// Where tensioners or centres move.
+    /// In runs of drives with moving tensioners or centres.
     WhereBodiesMove,
-    /// Where it is asked for.
+    /// On demand.
     OnDemand,
 }
 
