@@ -1,5 +1,6 @@
 //! A drive in motion: step, read, set, sample.
 
+mod ended;
 mod live;
 mod many;
 mod sample;
@@ -39,6 +40,10 @@ use crate::{Run, SimulationError};
 #[derive(Clone, Debug)]
 pub struct Simulation {
     moving: Moving,
+    /// Contacts that ended: handed out at the last reading, on the clock of the simulation, and since then, on that of the drive.
+    ended: [Vec<ContactEvent>; 2],
+    /// Impacts of rollers that came to a sprocket, likewise.
+    struck: [Vec<Impact>; 2],
     /// The state before the last step, when that went beyond the time read: a change at that time begins from here.
     before: Option<Box<Before>>,
     /// Samples that were taken before anybody asked for them.
@@ -64,10 +69,6 @@ struct Moving {
     system: System,
     state: State,
     stepper: Stepper<System>,
-    /// Contacts that ended before the last sample, and since then.
-    ended: [Vec<ContactEvent>; 2],
-    /// Impacts of rollers that came to a sprocket, that ended before the last sample, and since then.
-    struck: [Vec<Impact>; 2],
 }
 
 impl Moving {
@@ -75,12 +76,6 @@ impl Moving {
         let step = self.system.advance(&mut self.stepper, &mut self.state);
         step.map(drop)
             .map_err(|error| SimulationError::stepping(error, &self.system))
-    }
-
-    /// Takes in what ended in the last steps.
-    fn gather(&mut self) {
-        self.ended[1].append(&mut self.system.take_events());
-        self.struck[1].append(&mut self.system.take_impacts());
     }
 }
 
@@ -137,7 +132,7 @@ impl Simulation {
         let stepper = method
             .start(&mut system, &mut state)
             .map_err(|error| SimulationError::starting(error, run.stepping))?;
-        let dofs = state.q.len();
+        let (dofs, rollers) = (state.q.len(), system.rollers());
         let record = system.new_record();
         Ok(Self {
             buffers: [
@@ -150,9 +145,9 @@ impl Simulation {
                 system,
                 state,
                 stepper,
-                ended: Default::default(),
-                struck: Default::default(),
             },
+            ended: Default::default(),
+            struck: [(); 2].map(|()| Vec::with_capacity(rollers)),
             before: None,
             ahead: VecDeque::new(),
             read: assembled.time - assembled.zero,
@@ -232,25 +227,27 @@ impl Simulation {
         }
     }
 
-    /// Contacts that ended between the sample before the last and the last one, in the order of their
+    /// Contacts that ended since the reading or sample before the last one, in the order of their
     /// ends; of the kinds that [`Run::events`] asks for.
+    ///
+    /// A reading within a step leaves to the next one what ended in this step: a change at its time takes the step back.
     pub fn events(&self) -> &[ContactEvent] {
-        &self.moving.ended[0]
+        &self.ended[0]
     }
 
-    /// Impacts of rollers that came to a sprocket, those that ended between the sample before the last and the last one.
+    /// Impacts of rollers that came to a sprocket, handed out as [`events`](Self::events) are.
     pub fn impacts(&self) -> &[Impact] {
-        &self.moving.struck[0]
+        &self.struck[0]
     }
 
     /// Contacts that [`events`](Self::events) has not handed out: those that ended after the last
     /// sample, and those that last, with an infinite end.
     pub fn outstanding_events(&self) -> Vec<ContactEvent> {
-        let mut events = self.moving.ended[1].clone();
+        let mut events = self.ended[1].clone();
         events.extend(self.moving.system.lasting_events());
         let zero = self.zero();
         for event in &mut events {
-            sample::count_from(zero, event);
+            ended::count_from(zero, event);
         }
         events
     }

@@ -420,7 +420,7 @@ impl Chain {
 /// Quantities that can be read off it.
 impl Chain {
     hand_on_with_record! {
-        fn tensions(&self, at: Moment<'_>, record) -> Vec<f64>;
+        fn tensions(&self, at: Moment<'_>, record, out: &mut Vec<f64>);
         fn pressed(&self, at: Moment<'_>, record) -> f64;
         fn observe(&self, at: Moment<'_>, record, out: &mut Observation);
         fn observe_forces(&self, at: Moment<'_>, record, out: &mut Observation);

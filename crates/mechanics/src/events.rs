@@ -12,11 +12,11 @@ impl System {
         self.events = any.then(|| EventLog::new(kinds, places));
     }
 
-    /// Contacts that ended since the last call, in the order of their ends.
-    pub fn take_events(&mut self) -> Vec<ContactEvent> {
-        self.events
-            .as_mut()
-            .map_or_else(Vec::new, |log| std::mem::take(&mut log.ended))
+    /// Appends contacts that ended since the last call, in the order of their ends.
+    pub fn hand_out_events(&mut self, to: &mut Vec<ContactEvent>) {
+        if let Some(log) = &mut self.events {
+            to.append(&mut log.ended);
+        }
     }
 
     /// Contacts that last, with an infinite end.

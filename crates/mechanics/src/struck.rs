@@ -33,20 +33,18 @@ impl System {
         }
     }
 
-    /// Impacts of rollers that came to a sprocket, those that ended since the last call.
-    pub fn take_impacts(&mut self) -> Vec<Impact> {
-        let mut impacts = Vec::new();
+    /// Appends impacts of rollers that came to a sprocket, those that ended since the last call.
+    pub fn hand_out_impacts(&mut self, to: &mut Vec<Impact>) {
         let mut first = 0;
         for member in &mut self.chains {
             for on in &mut member.contacts.teeth {
-                impacts.extend(on.arrivals.take().map(|impact| Impact {
+                to.extend(on.arrivals.take().map(|impact| Impact {
                     roller: first + impact.roller,
                     ..impact
                 }));
             }
             first += member.chain.rollers();
         }
-        impacts
     }
 
     /// Impacts since the start, of every sprocket, guide and chain where anything can touch.

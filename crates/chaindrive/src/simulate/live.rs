@@ -104,7 +104,11 @@ impl Simulation {
                 read: self.read,
             });
         }
-        self.step_towards(t, budget, Changes::AtTheEnd)
+        let reached = self.step_towards(t, budget, Changes::AtTheEnd)?;
+        if reached {
+            self.hand_over_until(t);
+        }
+        Ok(reached)
     }
 
     /// Steps until the state is at a time of the simulation or beyond it, for at most about `budget` of wall time.
@@ -116,24 +120,25 @@ impl Simulation {
     ) -> Result<bool, SimulationError> {
         let begin = Instant::now();
         let time = self.zero() + time;
-        let moving = &mut self.moving;
-        while moving.state.t < time && begin.elapsed() < budget {
+        while self.moving.state.t < time && begin.elapsed() < budget {
             for _ in 0..STEPS_PER_LOOK {
-                if moving.state.t >= time {
+                let Moving { state, stepper, .. } = &self.moving;
+                if state.t >= time {
                     break;
                 }
                 if changes == Changes::None {
                     self.before = None;
-                } else if moving.state.t + moving.stepper.next_step() >= time {
-                    self.before = Some(Box::new(Before::of(moving)));
+                } else if state.t + stepper.next_step() >= time {
+                    self.gather();
+                    self.before = Some(Box::new(Before::of(self)));
                 }
-                moving.keep_forces_for(time);
-                moving.step()?;
+                self.moving.keep_forces_for(time);
+                self.moving.step()?;
             }
         }
         self.stepping_time += begin.elapsed().as_secs_f64();
-        moving.gather();
-        Ok(moving.state.t >= time)
+        self.gather();
+        Ok(self.moving.state.t >= time)
     }
 
     /// Sets what acts on the drive from the time of the last reading on.

@@ -2,6 +2,7 @@
 
 use chaindrive_mechanics::{Assembled, ContactEvent, EventKinds, Impact, Observation};
 
+use super::ended::count_from;
 use super::live::Changes;
 use super::{Arc, Simulation};
 use crate::patience::LOOK;
@@ -15,30 +16,11 @@ pub(crate) struct Sample {
     struck: Vec<Impact>,
 }
 
-/// Tells the times of a contact from a zero of the clock on.
-pub(super) fn count_from(zero: f64, event: &mut ContactEvent) {
-    event.start -= zero;
-    event.end -= zero;
-}
-
 impl Simulation {
     /// Reads everything off the state at a time \[s\] within the last step, and gathers what ended since the last sample.
     pub(super) fn sample(&mut self, time: f64) {
         self.observe(time);
-        let zero = self.zero();
-        let moving = &mut self.moving;
-        let [handed, since] = &mut moving.ended;
-        std::mem::swap(handed, since);
-        since.clear();
-        for event in handed {
-            count_from(zero, event);
-        }
-        let [handed, since] = &mut moving.struck;
-        std::mem::swap(handed, since);
-        since.clear();
-        for impact in handed {
-            impact.time -= zero;
-        }
+        self.hand_over(self.gathered());
     }
 
     /// Goes on to a time \[s\] and takes a sample there; with the drive as it stood before the last step, where one is wanted.
@@ -65,8 +47,8 @@ impl Simulation {
         self.sample(time);
         let sample = Sample {
             observation: self.observation.clone(),
-            ended: self.moving.ended[0].clone(),
-            struck: self.moving.struck[0].clone(),
+            ended: self.ended[0].clone(),
+            struck: self.struck[0].clone(),
         };
         Ok((sample, start))
     }
@@ -128,12 +110,12 @@ impl Simulation {
         self.start_energy.get_or_insert(self.observation.energy);
         self.read = time;
         self.next += 1;
-        let ended = &mut self.moving.ended[0];
+        let ended = &mut self.ended[0];
         *ended = sample.ended;
         for event in ended {
             count_from(zero, event);
         }
-        let struck = &mut self.moving.struck[0];
+        let struck = &mut self.struck[0];
         *struck = sample.struck;
         for impact in struck.iter_mut() {
             impact.time -= zero;

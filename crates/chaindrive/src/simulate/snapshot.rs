@@ -39,6 +39,9 @@ pub struct Snapshot {
     /// Of the simulation, see [`Simulation::fingerprint`].
     fingerprint: u32,
     moving: Remembered,
+    /// Handed out at the last reading, and since then.
+    ended: [Vec<ContactEvent>; 2],
+    struck: [Vec<Impact>; 2],
     before: Option<Before>,
     /// Time reached \[s\].
     time: f64,
@@ -54,14 +57,14 @@ struct Remembered {
     system: SystemMemory,
     state: State,
     stepper: StepperMemory<Record>,
-    ended: [Vec<ContactEvent>; 2],
-    struck: [Vec<Impact>; 2],
 }
 
 /// The drive before the last step: the way back for a change at a time within it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Before {
     moving: Remembered,
+    /// Contacts and impacts that had ended since the last reading.
+    pub(super) gathered: [usize; 2],
     /// Time of the first event behind it \[s\].
     event: f64,
     /// Plans made since then.
@@ -69,10 +72,12 @@ pub(super) struct Before {
 }
 
 impl Before {
-    /// The drive as it stands now.
-    pub(super) fn of(moving: &Moving) -> Self {
+    /// The drive as it stands now, with what ended until now taken in.
+    pub(super) fn of(simulation: &Simulation) -> Self {
+        let moving = &simulation.moving;
         Self {
             moving: moving.remembered(),
+            gathered: simulation.gathered(),
             event: moving.system.next_event(moving.state.t),
             planned: Vec::new(),
         }
@@ -133,6 +138,8 @@ impl Simulation {
         Snapshot {
             fingerprint: self.fingerprint(),
             moving: self.moving.remembered(),
+            ended: self.ended.clone(),
+            struck: self.struck.clone(),
             before: self.before.as_deref().cloned(),
             time: self.time(),
             read: self.read,
@@ -156,6 +163,8 @@ impl Simulation {
         }
         self.before = snapshot.before.clone().map(Box::new);
         self.moving = moving;
+        self.ended.clone_from(&snapshot.ended);
+        self.struck.clone_from(&snapshot.struck);
         self.ahead.clear();
         self.read = snapshot.read;
         self.next = snapshot.next;
@@ -173,9 +182,12 @@ impl Simulation {
     pub(super) fn go_back(&mut self, before: Before) -> Result<(), SimulationError> {
         let Before {
             moving: then,
+            gathered: [contacts, impacts],
             event,
             planned,
         } = before;
+        self.ended[1].truncate(contacts);
+        self.struck[1].truncate(impacts);
         let own = "the memory is of this drive";
         if event > self.moving.state.t {
             // Nothing was set in that step, and all else is memory.
@@ -204,8 +216,6 @@ impl Simulation {
             system,
             state: then.state.clone(),
             stepper,
-            ended: then.ended.clone(),
-            struck: then.struck.clone(),
         })
     }
 
@@ -229,14 +239,10 @@ impl Moving {
             system,
             state,
             stepper,
-            ended,
-            struck,
         } = then;
         self.system.remember(system)?;
         self.stepper.remember(&self.system, &state, stepper)?;
         self.state = state;
-        self.ended = ended;
-        self.struck = struck;
         Ok(())
     }
 
@@ -245,8 +251,6 @@ impl Moving {
             system: self.system.memory(),
             state: self.state.clone(),
             stepper: self.stepper.memory(),
-            ended: self.ended.clone(),
-            struck: self.struck.clone(),
         }
     }
 }

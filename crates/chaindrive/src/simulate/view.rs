@@ -89,7 +89,8 @@ impl Simulation {
 
     /// Reads the channels of a view at the time of the last reading.
     ///
-    /// They are what [`channel`](Self::channel) says there, to the bit.
+    /// They are what [`channel`](Self::channel) says there, to the bit. After a [step](Self::step) of an explicit method neither
+    /// of them allocates, once the windows around sprockets and guides have had their most rollers.
     pub fn read_into(&mut self, view: &mut View) {
         let View {
             channels,
@@ -127,9 +128,10 @@ impl Simulation {
             moving.system.keep_forces_from(from);
             moving.step()?;
         }
-        moving.gather();
+        self.gather();
         if steps > 0 {
             self.read = self.time();
+            self.hand_over(self.gathered());
         }
         Ok(self.read)
     }

@@ -2,7 +2,8 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use chaindrive::{
-    Assembled, Channel, Control, Flow, Observation, Run, Scene, Simulation, Snapshot, Stepping,
+    Assembled, Channel, ContactEvent, Control, EventKinds, Flow, Impact, Observation, Run, Scene,
+    Simulation, Snapshot, Stepping,
 };
 
 pub(crate) fn start(scene: &Scene, stepping: Stepping) -> Simulation {
@@ -26,7 +27,7 @@ pub(crate) fn preset(name: &str) -> Scene {
 }
 
 /// Roller, bush and pin of particles as points of their own.
-fn loose() -> Scene {
+pub(crate) fn loose() -> Scene {
     let scene = preset("industrial_16b");
     let scene = scene.replace("chain.rollers", "free").unwrap();
     scene
@@ -323,4 +324,82 @@ fn steps_land_on_the_knots_of_a_table() {
     simulation.advance_to(1.6e-3).unwrap();
     let after = simulation.statistics().smallest_step;
     assert!(after < before, "{step:?}: {after} s, {before} s");
+}
+
+/// Contacts and impacts are handed out once, whenever one reads, whatever is set there and taken back.
+#[test]
+fn what_ended_is_handed_out_once() {
+    let scene = preset("marine_two_sprockets");
+    let run = Run {
+        events: EventKinds {
+            teeth: true,
+            ..EventKinds::default()
+        },
+        every: 2e-3,
+        until: 0.2,
+        ..Run::default()
+    };
+    let assembled = assembled(&scene);
+    let begin = || Simulation::from_assembled(assembled.clone(), &run).unwrap();
+    let torque = Control::Torque("camshaft".into());
+    let changes = (1..40).map(|k| (5e-3 * f64::from(k) + 1.7e-7, 100.0 * f64::from(k % 3)));
+    let changes: Vec<(f64, f64)> = changes.collect();
+    let told = |of: &Simulation| format!("{:?} {:?}", of.events(), of.impacts());
+
+    let mut planned = begin();
+    for (time, value) in &changes {
+        planned.set_at(*time, &torque, *value).unwrap();
+    }
+    let mut by_reading = planned.clone();
+    let [mut of_samples, mut of_readings, mut of_steps] = [(); 3].map(|()| Log::default());
+    while planned.next_sample().unwrap().is_some() {
+        of_samples.take(&planned);
+    }
+
+    let mut set = begin();
+    for (time, value) in changes {
+        set.advance_to(time).unwrap();
+        of_readings.take(&set);
+        let copy = set.snapshot();
+        set.set(&torque, value).unwrap();
+        set.advance_to(time + 1e-6).unwrap();
+        let first = told(&set);
+        // Again, from the reading on.
+        set.restore(&copy).unwrap();
+        set.set(&torque, value).unwrap();
+        set.advance_to(time + 1e-6).unwrap();
+        assert_eq!(told(&set), first);
+        of_readings.take(&set);
+    }
+    while by_reading.time() < 0.2 {
+        by_reading.step(1).unwrap();
+        of_steps.take(&by_reading);
+    }
+    let least = of_samples.impacts.len() / 2;
+    assert!(least > 3 && of_samples.events.len() > 10);
+    for (which, log) in [("readings", of_readings), ("steps", of_steps)] {
+        let events = log.events.len().min(of_samples.events.len());
+        assert!(log.impacts.len() > least, "{which}");
+        assert_eq!(log.events[..events], of_samples.events[..events], "{which}");
+        let impacts = log.impacts.len().min(of_samples.impacts.len());
+        assert_eq!(
+            log.impacts[..impacts],
+            of_samples.impacts[..impacts],
+            "{which}"
+        );
+    }
+}
+
+/// What a simulation handed out.
+#[derive(Default)]
+struct Log {
+    events: Vec<ContactEvent>,
+    impacts: Vec<Impact>,
+}
+
+impl Log {
+    fn take(&mut self, from: &Simulation) {
+        self.events.extend_from_slice(from.events());
+        self.impacts.extend_from_slice(from.impacts());
+    }
 }

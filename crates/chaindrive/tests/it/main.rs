@@ -1,6 +1,7 @@
 //! Integration tests in one binary: linking dozens of them takes longer than running them.
 
 mod against_reference;
+mod allocations;
 mod architecture;
 mod bearings;
 mod choice;

@@ -138,7 +138,8 @@ fn is_taut(system: &System, q: &[f64]) -> bool {
     let mut chains = system.chains.iter().zip(&record.chains);
     chains.any(|(member, record)| {
         let chain = &member.chain;
-        let tensions = chain.tensions(member.own(at), record);
+        let mut tensions = Vec::new();
+        chain.tensions(member.own(at), record, &mut tensions);
         let weight = (chain.weights()[0] * system.bodies.gravity.norm()).max(1e-9);
         let slack = (1e-6 * weight).max(1e3 * tensions.len() as f64 * rounding(member, q));
         tensions.iter().sum::<f64>() > slack

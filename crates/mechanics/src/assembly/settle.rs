@@ -149,7 +149,10 @@ fn mean_tension(system: &System, chain: usize, q: &[f64]) -> f64 {
         v: &still,
         z: &[],
     };
-    let tensions = member.chain.tensions(member.own(at), &record.chains[chain]);
+    let mut tensions = Vec::new();
+    let own = member.own(at);
+    let record = &record.chains[chain];
+    member.chain.tensions(own, record, &mut tensions);
     tensions.iter().sum::<f64>() / tensions.len() as f64
 }
 

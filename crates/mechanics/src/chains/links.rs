@@ -362,14 +362,20 @@ impl Linkage {
         }
     }
 
-    /// Tension of all links \[N\]: half of what stretches them from both ends, joints, teeth and given loads together.
-    fn link_tensions(&self, joint_state: &JointState) -> Vec<f64> {
-        let mut stretch = vec![[Vector::zeros(); 2]; self.series.links];
+    /// Appends the tension of all links \[N\]: half of what stretches them from both ends, joints, teeth and given loads together.
+    fn link_tensions(&self, joint_state: &JointState, out: &mut Vec<f64>) {
+        let first = out.len();
+        out.resize(first + self.series.links, 0.0);
+        let tensions = &mut out[first..];
         let mut load = |body: Option<usize>, joint: usize, force: Vector| {
             // Rollers have no ends.
-            if let Some(ends) = body.and_then(|body| stretch.get_mut(body)) {
-                ends[usize::from(Some(joint) != body)] += force;
-            }
+            let Some(link) = body.filter(|body| *body < self.series.links) else {
+                return;
+            };
+            let [start, end] = [0, 1].map(|end| joint_state.posture.tip(link, end).place);
+            // T = ½ (F₂ − F₁)·d, F at the ends of the link along d
+            let pull = 0.5 * (end - start).normalize().dot(&force);
+            tensions[link] += if joint == link { -pull } else { pull };
         };
         for joint in 0..self.joints.len() {
             let Some(mates) = self.joints[joint].pair else {
@@ -394,13 +400,6 @@ impl Linkage {
                 load(Some(link), link + index, *force);
             }
         }
-        let links = stretch.iter().enumerate();
-        links
-            .map(|(link, [at_first, at_second])| {
-                let [first, second] = [0, 1].map(|end| joint_state.posture.tip(link, end).place);
-                0.5 * (second - first).normalize().dot(&(at_second - at_first))
-            })
-            .collect()
     }
 }
 

@@ -58,8 +58,8 @@ pub(crate) trait Makeup: Statics {
     /// ω² and damping rate D of the stiffest mode, bodies by themselves left out.
     fn rates(&self, around: Surroundings<'_>, loads: &Loads, work: &mut Self::Work) -> Rates;
 
-    /// Tension of every link \[N\].
-    fn tensions(&self, at: Moment<'_>, work: &Self::Work) -> Vec<f64>;
+    /// Appends the tension of every link \[N\].
+    fn tensions(&self, at: Moment<'_>, work: &Self::Work, out: &mut Vec<f64>);
 
     /// Appends what belongs to the chain, forces apart.
     fn observe(&self, at: Moment<'_>, work: &Self::Work, out: &mut Observation);
@@ -69,7 +69,7 @@ pub(crate) trait Makeup: Statics {
 
     /// Appends tensions of links, and forces of joints if it has any.
     fn observe_forces(&self, at: Moment<'_>, work: &Self::Work, out: &mut Observation) {
-        out.link_tension.extend(self.tensions(at, work));
+        self.tensions(at, work, &mut out.link_tension);
     }
 
     /// Joints that have a state of their own: none where links are springs between rollers.
@@ -139,7 +139,8 @@ pub(crate) trait Makeup: Statics {
 
     /// Largest force in a link or contact \[N\].
     fn pressed(&self, at: Moment<'_>, work: &Self::Work) -> f64 {
-        let tensions = self.tensions(at, work);
+        let mut tensions = Vec::new();
+        self.tensions(at, work, &mut tensions);
         tensions.iter().fold(0.0, |m, t| f64::max(m, t.abs()))
     }
 }

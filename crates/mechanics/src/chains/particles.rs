@@ -230,12 +230,12 @@ impl Makeup for Particles {
         self.stiffest_mode(around, loads, &work.joints.resistance, 1.0)
     }
 
-    fn tensions(&self, at: Moment<'_>, _work: &Work) -> Vec<f64> {
+    fn tensions(&self, at: Moment<'_>, _work: &Work, out: &mut Vec<f64>) {
         let links = (0..self.links.count).map(|link| {
             let pins = [self.pin(at, link), self.pin(at, link + 1)];
             self.links.tension(link, pins)
         });
-        links.collect()
+        out.extend(links);
     }
 
     fn observe(&self, at: Moment<'_>, _work: &Work, out: &mut Observation) {

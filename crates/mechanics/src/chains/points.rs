@@ -257,7 +257,7 @@ impl Makeup for Points {
         Rates::of(self.stiffest_mode(around, loads, work))
     }
 
-    fn tensions(&self, at: Moment<'_>, _work: &Work) -> Vec<f64> {
+    fn tensions(&self, at: Moment<'_>, _work: &Work, out: &mut Vec<f64>) {
         let end = |block: usize, joint: usize| {
             let place = self.point(at.q, block, joint);
             (place, self.point(at.v, block, joint).coords)
@@ -267,7 +267,7 @@ impl Makeup for Points {
             let ends = [end(AFTER, link), end(BEFORE, next)];
             self.links.tension(link, ends)
         });
-        links.collect()
+        out.extend(links);
     }
 
     fn observe(&self, at: Moment<'_>, _work: &Work, out: &mut Observation) {
@@ -279,7 +279,7 @@ impl Makeup for Points {
     }
 
     fn observe_forces(&self, at: Moment<'_>, work: &Work, out: &mut Observation) {
-        out.link_tension.extend(self.tensions(at, work));
+        self.tensions(at, work, &mut out.link_tension);
         self.observe_joints(work, out);
     }
 

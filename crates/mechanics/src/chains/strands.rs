@@ -122,9 +122,9 @@ impl Makeup for Strands {
             .stiffest_mode(around, loads, resistance, self.across)
     }
 
-    fn tensions(&self, at: Moment<'_>, _work: &Work) -> Vec<f64> {
+    fn tensions(&self, at: Moment<'_>, _work: &Work, out: &mut Vec<f64>) {
         let links = 0..self.chain.series.links;
-        links.map(|link| self.shares(at, link).sum()).collect()
+        out.extend(links.map(|link| self.shares(at, link).sum::<f64>()));
     }
 
     fn observe(&self, at: Moment<'_>, _work: &Work, out: &mut Observation) {

@@ -64,6 +64,10 @@ impl Arrivals {
         self.struck.clear();
         self.struck.resize(rollers, false);
         self.fresh = true;
+        // Room for all at once, so that no step has to make some.
+        self.next.reserve(rollers);
+        self.lasting.reserve(rollers);
+        self.ended.reserve(rollers);
     }
 
     /// Takes note of which rollers are near, once they have been looked for again.

@@ -73,8 +73,8 @@ impl Makeup for Linkage {
         self.stiffest_mode(around, work)
     }
 
-    fn tensions(&self, _at: Moment<'_>, work: &Work) -> Vec<f64> {
-        self.link_tensions(&work.joint_state)
+    fn tensions(&self, _at: Moment<'_>, work: &Work, out: &mut Vec<f64>) {
+        self.link_tensions(&work.joint_state, out);
     }
 
     fn observe(&self, at: Moment<'_>, work: &Work, out: &mut Observation) {
@@ -86,7 +86,7 @@ impl Makeup for Linkage {
     }
 
     fn observe_forces(&self, at: Moment<'_>, work: &Work, out: &mut Observation) {
-        out.link_tension.extend(self.tensions(at, work));
+        self.tensions(at, work, &mut out.link_tension);
         self.observe_joints(&work.joint_state, out);
     }
 

@@ -44,21 +44,21 @@ impl Linkage {
             out.joint_force_x.push(force.x);
             out.joint_force_y.push(force.y);
         }
-        let nothing = Vector::new(f64::NAN, f64::NAN);
         let free = self.free_rollers.as_ref();
-        let mut forces: Vec<Vector> = (0..self.joints.len())
-            .map(|joint| match free.and_then(|free| free.body[joint]) {
-                Some(_) => Vector::zeros(),
-                None => nothing,
-            })
-            .collect();
+        let first = out.bush_force_x.len();
+        let start = (0..self.joints.len()).map(|joint| {
+            let body = free.and_then(|free| free.body[joint]);
+            body.map_or(f64::NAN, |_| 0.0)
+        });
+        out.bush_force_x.extend(start.clone());
+        out.bush_force_y.extend(start);
         // Only bushes press on another body of the chain here: pins are not among the elements.
         let bushes = joint_state.elements.iter();
         for bush in bushes.filter(|element| matches!(element.b, Partner::Body(_))) {
-            forces[bush.joint] = bush.push();
+            let push = bush.push();
+            out.bush_force_x[first + bush.joint] = push.x;
+            out.bush_force_y[first + bush.joint] = push.y;
         }
-        out.bush_force_x.extend(forces.iter().map(|force| force.x));
-        out.bush_force_y.extend(forces.iter().map(|force| force.y));
     }
 
     /// Appends how every bush stands to its roller, where rollers are free.

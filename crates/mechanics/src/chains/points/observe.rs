@@ -20,12 +20,11 @@ impl Points {
     pub(super) fn observe_motion(&self, at: Moment<'_>, out: &mut Observation) {
         let count = self.series.rollers;
         out.add_rollers(Pose::of_first(at, self.series.stride), count);
-        let angles: Vec<f64> = (0..count)
-            .map(|link| {
-                let along = self.along(at.q, link);
-                along.y.atan2(along.x)
-            })
-            .collect();
+        let first = out.link_angle.len();
+        out.link_angle.extend((0..count).map(|link| {
+            let along = self.along(at.q, link);
+            along.y.atan2(along.x)
+        }));
         for joint in 0..count {
             let [bush, pin] = self.sides(joint);
             let offset = self.point(at.q, pin, joint) - self.point(at.q, bush, joint);
@@ -38,11 +37,11 @@ impl Points {
             out.bush_offset_y.push(offset.y);
             out.bush_depth
                 .push((offset.norm() - self.bush.clearance).max(0.0));
+            let angles = &out.link_angle[first..];
             let before = angles[(joint + count - 1) % count];
             let turned = (angles[joint] - before) * -pushed_back(pin);
             out.joint_angle.push(turned.sin().atan2(turned.cos()));
         }
-        out.link_angle.extend(angles);
     }
 
     /// Appends the forces of joints and free rollers.
