@@ -233,13 +233,15 @@ impl Drive {
         let begin = system.begin;
         let mut speeds = setting_off::speeds(&system, &layouts, |motion| motion.at(begin).rate);
         let trains = free_trains::free_trains(&system, &laid.parts, &q, &speeds)?;
-        let torques = free_trains::balance(&mut system, &trains, &q);
+        let (torques, moving) = free_trains::balance(&mut system, &trains, &q);
         let mut statics = Vec::new();
         if self.settle {
             overload::check(&system, &laid.parts, (&q, &torques))?;
+            free_trains::hold(&mut system, &moving, &q);
             statics = relax::settle(&mut system, &mut q)
                 .map_err(|error| laid_through_a_guide(&laid).unwrap_or(error))
                 .map_err(|error| overload::named(error, &system, &laid.parts, (&q, &torques)))?;
+            free_trains::let_go(&mut system, &moving);
         }
         for train in trains.iter().filter(|it| it.speed != 0.0) {
             for (shaft, ratio) in &train.shafts {
@@ -247,7 +249,9 @@ impl Drive {
             }
         }
         let mut v = setting_off::set_off(&system, &layouts, &speeds, &q);
+        free_trains::hold(&mut system, &moving, &q);
         self.put_in_place(&mut system, &laid.parts, &statics, [&mut q, &mut v])?;
+        free_trains::let_go(&mut system, &moving);
         free_trains::release(&mut system, torques);
         let z = system.settled_states(&q);
         system.start(self.begin, &mut q, &mut v, &z);

@@ -350,3 +350,28 @@ adjust = {{ kind = "sprocket", name = "driven", direction = [1, 0], within = "20
         .replace("adjust =", "#");
     assert!(refused(&nothing).contains("nothing is moved to make it"));
 }
+
+/// A drive that torques turn begins at the phase of the scene, however loosely its chain lies in the teeth, and does not look for another one.
+#[test]
+fn a_train_that_moves_is_settled_at_its_phase() {
+    for pretension in ["20 N", "200 N", "800 N"] {
+        for phase in [0.0, 0.3, 0.5] {
+            let motor = format!("speed = \"working-point\"\n{TABLE}");
+            let text = conveyor(&motor, LOAD).replace("800 N", pretension);
+            let text = text.replace("[route]", &format!("[route]\nphase = {phase}"));
+            let start = assembled(&text).unwrap_or_else(|error| panic!("{error}"));
+            for it in &start.statics {
+                assert!(it.iterations < 100, "{pretension}, {phase}: {it:?}");
+            }
+            let simulation = Simulation::from_assembled(start, &Run::default());
+            let mut simulation = simulation.unwrap_or_else(|error| panic!("{error}"));
+            let seen = simulation.advance_to(0.0).expect("it begins");
+            let slipped = seen.sprocket_angle[0];
+            assert_eq!(
+                slipped.to_bits(),
+                0.0_f64.to_bits(),
+                "{pretension}, {phase}"
+            );
+        }
+    }
+}

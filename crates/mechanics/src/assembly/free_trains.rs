@@ -13,9 +13,10 @@ use chaindrive_integrate::Moment;
 
 use super::setting_off::spread;
 use crate::bodies::{Bodies, Shaft};
+use crate::course::Path;
 use crate::drive::{Layout, Parts, Rotation, StartSpeed};
 use crate::system::System;
-use crate::{AssemblyError, Torque};
+use crate::{AssemblyError, Course, Torque};
 
 /// Shafts that chains, gears and couplings join and no motion turns.
 #[derive(Clone, Debug, PartialEq)]
@@ -180,13 +181,19 @@ impl FreeTrain {
 /// Torques of the shafts of a system, by shaft: those that drive and those that load.
 pub(super) type Torques = Vec<[Vec<Torque>; 2]>;
 
-/// Puts constant torques, which balance, in the place of those of free trains, for a static state; returns those that were there.
-pub(super) fn balance(system: &mut System, trains: &[FreeTrain], q: &[f64]) -> Torques {
+/// Puts constant torques, which balance, in the place of those of free trains, for a static state; returns those that were there, and a
+/// shaft of every such train.
+pub(super) fn balance(
+    system: &mut System,
+    trains: &[FreeTrain],
+    q: &[f64],
+) -> (Torques, Vec<usize>) {
     let shafts = system.bodies.shafts.iter();
     let before = shafts
         .map(|it| [it.drive.clone(), it.load.clone()])
         .collect();
     let free: Vec<&FreeTrain> = trains.iter().filter(|it| it.sets_off(system)).collect();
+    let mut moving = Vec::new();
     for train in free {
         let torques = train.torques(system, q);
         // What rounding leaves is no acceleration.
@@ -199,6 +206,7 @@ pub(super) fn balance(system: &mut System, trains: &[FreeTrain], q: &[f64]) -> T
         if balanced && train.speed == 0.0 {
             continue;
         }
+        moving.push(train.shafts[0].0);
         for ((index, c), torque) in train.shafts.iter().zip(torques) {
             // M − J c α
             let share = inertia(system, *index) * c * train.acceleration();
@@ -212,7 +220,28 @@ pub(super) fn balance(system: &mut System, trains: &[FreeTrain], q: &[f64]) -> T
             }];
         }
     }
-    before
+    (before, moving)
+}
+
+/// Holds shafts where they stand, one of every train that moves: it is settled at the phase at which it was laid. Left free it would turn, in
+/// thousands of short steps, to the phase at which its chains have the least energy.
+pub(super) fn hold(system: &mut System, moving: &[usize], q: &[f64]) {
+    let still = vec![0.0; q.len()];
+    for shaft in moving {
+        let turn = &system.bodies.shafts[*shaft].turn;
+        let now = turn.driving(system.begin, q, &still);
+        let path = Path::driven(now, system.begin, Course::default());
+        let train = turn.train;
+        system.bodies.turn_by(train, Some(path));
+    }
+}
+
+/// Lets them go.
+pub(super) fn let_go(system: &mut System, moving: &[usize]) {
+    for shaft in moving {
+        let train = system.bodies.shafts[*shaft].turn.train;
+        system.bodies.turn_by(train, None);
+    }
 }
 
 /// Share of all torques of a train that rounding may leave of their sum.
