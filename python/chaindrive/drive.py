@@ -92,7 +92,7 @@ class Drive:
         SceneError
             With everything that is wrong, each with its path.
         """
-        return cls._of(_core.Drive.from_text(_json(scene, name), name))
+        return cls._of(_core.Drive.from_data(_json(scene, name), name))
 
     def replace(self, changes: Mapping[str, Any]) -> Drive:
         """Return a new drive with some values of its scene replaced.

@@ -43,7 +43,7 @@ class Problem(NamedTuple):
     path: str
     """Place in the scene, such as ``sprockets[1].teeth``; empty for the text as a whole."""
     line: int | None
-    """Line of the text, counted from 1; None in JSON, which carries no lines."""
+    """Line of the text, counted from 1; None in a scene of values, which stands in no text."""
     message: str
     """The mistake, with the offending value."""
     hint: str | None

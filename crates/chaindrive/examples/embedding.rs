@@ -61,7 +61,7 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
         speed: 300.0,
         load: 40.0,
     };
-    let scene = Scene::from_json(&conveyor.scene().to_string(), "conveyor")?;
+    let scene = Scene::from_data(&conveyor.scene().to_string(), "conveyor")?;
     let settings = Settings::default()
         .with("until", Given::Number(20e-3))
         .with("run_in", Given::Number(0.0))

@@ -241,7 +241,7 @@ impl Simulation {
     }
 
     /// Contacts that [`events`](Self::events) has not handed out: those that ended after the last
-    /// sample, and those that last, with an infinite end.
+    /// reading or sample, and those that last, with an infinite end.
     pub fn outstanding_events(&self) -> Vec<ContactEvent> {
         let mut events = self.ended[1].clone();
         events.extend(self.moving.system.lasting_events());

@@ -58,6 +58,7 @@ mod edit;
 mod error;
 mod expected;
 mod format;
+mod json;
 mod keys;
 mod limits;
 mod path;
@@ -176,6 +177,29 @@ impl Scene {
     /// Everything that is wrong with the text.
     pub fn from_json(text: &str, name: &str) -> Result<Self, SceneError> {
         Self::parsed(Node::parse_json, text, name)
+    }
+
+    /// Takes JSON that a program made and nobody sees: mistakes in it have a path, and no line.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use chaindrive::Scene;
+    ///
+    /// let scene = serde_json::json!({ "chain": "16B-9" });
+    /// let error = Scene::from_data(&scene.to_string(), "mine").unwrap_err();
+    /// assert!(error.problems.iter().all(|problem| problem.place.is_none()));
+    /// ```
+    pub fn from_data(json: &str, name: &str) -> Result<Self, SceneError> {
+        let placeless = |text: &str| {
+            let mut tree = Node::parse_json(text)?;
+            tree.take_places(None);
+            Ok(tree)
+        };
+        Self::parsed(placeless, json, name)
     }
 
     fn parsed(

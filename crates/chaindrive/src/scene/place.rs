@@ -62,32 +62,45 @@ impl Place {
 const WIDEST: usize = 120;
 const BEFORE: usize = 30;
 
-/// Beginnings of the lines of a text.
+/// Beginnings of the lines of a text. A table of measured values may stand on one line: no place costs more for that.
 pub(crate) struct Lines<'t> {
     text: &'t str,
     starts: Vec<usize>,
+    /// Bytes that go on with a character.
+    further: Vec<usize>,
 }
 
 impl<'t> Lines<'t> {
     pub(crate) fn new(text: &'t str) -> Self {
         let breaks = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
         let starts = std::iter::once(0).chain(breaks.map(|(at, _)| at + 1));
+        let further = (0..text.len()).filter(|at| !text.is_char_boundary(*at));
         Self {
             text,
             starts: starts.collect(),
+            further: further.collect(),
         }
+    }
+
+    /// Place of a part of the text itself; none for another text.
+    pub(crate) fn of(&self, part: &str) -> Option<Place> {
+        let begin = self.text.as_ptr().addr();
+        let from = part.as_ptr().addr().checked_sub(begin)?;
+        let bytes = from..from + part.len();
+        (bytes.end <= self.text.len()).then(|| self.at(bytes))
     }
 
     /// Place of some bytes, as far as they stand on one line.
     pub(crate) fn at(&self, bytes: Range<usize>) -> Place {
         let line = self.starts.partition_point(|&start| start <= bytes.start);
         let start = self.starts[line - 1];
-        let column = |at: usize| {
-            let before = self.text.get(start..at).unwrap_or_default();
-            before.chars().count() + 1
-        };
-        let rest = self.text.get(bytes.start..).unwrap_or_default();
-        let length = rest.lines().next().unwrap_or_default().trim_end().len();
+        let further = |until: usize| self.further.partition_point(|&at| at < until);
+        let column = |at: usize| at - start - (further(at) - further(start)) + 1;
+        let behind = self.starts.get(line).copied();
+        let rest = self
+            .text
+            .get(bytes.start..behind.unwrap_or(self.text.len()));
+        let length = rest.unwrap_or_default().trim_end().len();
         let end = bytes.end.clamp(bytes.start, bytes.start + length);
         Place {
             line,

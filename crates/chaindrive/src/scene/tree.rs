@@ -129,7 +129,9 @@ impl Node {
             let place = Place { line, columns };
             Problem::new("", Some(place), format!("not JSON: {message}"))
         })?;
-        Ok(Self::from_json(&json))
+        let mut tree = Self::from_json(&json);
+        Lines::new(text).place_json(&mut tree, text)?;
+        Ok(tree)
     }
 
     /// The tree of a JSON value; entries that are `null` count as absent.

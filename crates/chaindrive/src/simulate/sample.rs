@@ -20,7 +20,7 @@ impl Simulation {
     /// Reads everything off the state at a time \[s\] within the last step, and gathers what ended since the last sample.
     pub(super) fn sample(&mut self, time: f64) {
         self.observe(time);
-        self.hand_over(self.gathered());
+        self.hand_over_until(time);
     }
 
     /// Goes on to a time \[s\] and takes a sample there; with the drive as it stood before the last step, where one is wanted.

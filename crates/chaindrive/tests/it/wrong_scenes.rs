@@ -262,10 +262,52 @@ fn texts_that_are_no_scene() {
 }
 
 #[test]
-fn json_problems_have_paths_without_lines() {
-    let error = fails(r#"{"chain": {"pitch": "3 rpm", "links": 4}}"#);
-    let text = "test.toml: chain.pitch: `3 rpm` is an angular speed, needed is a length; such as \"88.9 mm\"";
+fn problems_in_json_have_places() {
+    let text = "\n{\"chain\": {\"title\": null,\n  \"pitch\": \"3 rpm\", \"links\": 4}}";
+    let error = fails(text);
+    let line = "test.toml:3:12: chain.pitch: `3 rpm` is an angular speed, needed is a length; such as \"88.9 mm\"";
+    assert_eq!(error.to_string(), line);
+    let excerpt = "\n  3 |   \"pitch\": \"3 rpm\", \"links\": 4}}\n    |            ^^^^^^^";
+    assert_eq!(format!("{error:#}"), format!("{line}{excerpt}"));
+    // Unknown keys are shown themselves, whatever is written with escapes before them.
+    let error = fails(r#"{"title": "µ \u00b5", "chain": {"type": "16B-1", "linkz": 4}}"#);
+    let place = error.problems[0].place.expect("it stands in the text");
+    assert_eq!(place.columns, Some([51, 56]), "{error}");
+    let error = Scene::from_data(text, "mine").unwrap_err();
+    assert!(
+        error.to_string().starts_with("mine: chain.pitch: `3 rpm`"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_key_of_json_stands_once() {
+    let error = fails("{\"chain\": {\"links\": 4,\n \"links\": 6}}");
+    let text = "test.toml:2:3: the key `links` stands twice in this table; keep one of them";
     assert_eq!(error.to_string(), text);
+    // An entry that is null is absent, not another one.
+    fails(r#"{"chain": {"links": 4, "mass": null}, "title": null}"#);
+}
+
+/// A table of measured values may stand on one line, and something else behind it.
+#[test]
+fn long_lines_are_read_at_once() {
+    let pairs = "[0.5, 1.5], ".repeat(150_000);
+    let pairs = pairs.trim_end_matches(", ");
+    for text in [
+        format!("chain = {{ x = [{pairs}], 'µ' = 1, links = 4 }}"),
+        format!("{{\"chain\": {{\"x\": [{pairs}], \"µ\": 1, \"links\": 4}}}}"),
+    ] {
+        let error = fails(&text);
+        let column = text.find('µ').map(|at| at + 1);
+        // With its quotation marks or without them.
+        let starts = error
+            .problems
+            .iter()
+            .filter_map(|it| Some(it.place?.columns?[0]));
+        let near = starts.filter(|start| column.is_some_and(|at| at - 1 <= *start && *start <= at));
+        assert_eq!(near.count(), 1, "{error}");
+    }
 }
 
 #[test]
