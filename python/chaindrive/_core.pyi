@@ -183,8 +183,7 @@ def biarc(
 class Sweep:
     def __new__(
         cls,
-        text: str,
-        name: str,
+        drive: Drive,
         vary: Sequence[tuple[str, Sequence[str]]],
         record: Sequence[str],
         table: bool,

@@ -202,7 +202,7 @@ def sweep(
         raise ParameterError(f"jobs = {jobs}, must be at least 1", "jobs", "at least 1")
     varied = [(path, _values(values, path)) for path, values in columns.items()]
     asked = (_listed(record), design is not None, settings)
-    core = _core.Sweep(drive.text, drive.name, varied, *asked)
+    core = _core.Sweep(drive._inner, varied, *asked)
     begin = time.perf_counter()
     place = None if output is None else place_of(output)
     # What is in memory only is lost with the program anyway.

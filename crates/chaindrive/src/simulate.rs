@@ -230,7 +230,7 @@ impl Simulation {
     /// Contacts that ended since the reading or sample before the last one, in the order of their
     /// ends; of the kinds that [`Run::events`] asks for.
     ///
-    /// A reading within a step leaves to the next one what ended in this step: a change at its time takes the step back.
+    /// A reading leaves to the next one what ended in the step that came to its time: a change at this time may take the step back.
     pub fn events(&self) -> &[ContactEvent] {
         &self.ended[0]
     }

@@ -32,7 +32,7 @@ pub(crate) struct Trouble {
 struct Mistake {
     /// Place in the scene, such as `sprockets[1].teeth`; empty for the text as a whole.
     path: String,
-    /// Line of the text, counted from 1; absent in JSON, and where an option gave the value.
+    /// Line of the text, counted from 1; absent where an option gave the value.
     line: Option<usize>,
     /// Column, counted from 1 in characters; absent where the line is meant as a whole.
     column: Option<usize>,

@@ -238,10 +238,11 @@ impl Drive {
         if self.settle {
             overload::check(&system, &laid.parts, (&q, &torques))?;
             free_trains::hold(&mut system, &moving, &q);
-            statics = relax::settle(&mut system, &mut q)
+            let settled = relax::settle(&mut system, &mut q);
+            free_trains::let_go(&mut system, &moving);
+            statics = settled
                 .map_err(|error| laid_through_a_guide(&laid).unwrap_or(error))
                 .map_err(|error| overload::named(error, &system, &laid.parts, (&q, &torques)))?;
-            free_trains::let_go(&mut system, &moving);
         }
         for train in trains.iter().filter(|it| it.speed != 0.0) {
             for (shaft, ratio) in &train.shafts {
@@ -252,7 +253,7 @@ impl Drive {
         free_trains::hold(&mut system, &moving, &q);
         self.put_in_place(&mut system, &laid.parts, &statics, [&mut q, &mut v])?;
         free_trains::let_go(&mut system, &moving);
-        free_trains::release(&mut system, torques);
+        free_trains::restore_torques(&mut system, torques);
         let z = system.settled_states(&q);
         system.start(self.begin, &mut q, &mut v, &z);
         Ok(Assembled {

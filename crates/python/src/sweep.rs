@@ -3,13 +3,14 @@
 mod objects;
 mod tasks;
 
+use chaindrive::Request;
 use chaindrive::channel::unit_attribute;
 use chaindrive::sweep::{self, Arrangement, Coordinate, Stacked};
-use chaindrive::{Request, Scene};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
+use crate::drive::Drive;
 use crate::errors::{OrRaise, parameter};
 use crate::run::{Setting, merged};
 pub(crate) use tasks::{SweepCoordinator, SweepWorker};
@@ -21,13 +22,12 @@ pub(crate) struct Sweep(sweep::Sweep);
 
 #[pymethods]
 impl Sweep {
-    /// Paths with their values as JSON, put into the scene of a text, in every combination or as the columns of a table; `given` are
+    /// Paths with their values as JSON, put into the scene of a drive, in every combination or as the columns of a table; `given` are
     /// settings of the runs, which go before those of the scene as they do in a run.
     #[new]
     fn new(
         py: Python<'_>,
-        text: &str,
-        name: &str,
+        drive: PyRef<'_, Drive>,
         vary: Vec<(String, Vec<String>)>,
         record: Vec<String>,
         table: bool,
@@ -45,12 +45,11 @@ impl Sweep {
             let values = values.collect::<PyResult<_>>()?;
             settings.push((path, values));
         }
-        let scene = Scene::from_text(text, name).or_raise()?;
         let names: Vec<(String, String)> = given
             .iter()
             .map(|(key, _)| (format!("run.{key}"), key.clone()))
             .collect();
-        let scene = Request::new(&scene, &merged(given)).or_raise()?.scene;
+        let scene = Request::new(&drive.scene, &merged(given)).or_raise()?.scene;
         let sweep = py.detach(|| {
             if table {
                 sweep::Sweep::of_table(&scene, &settings, &record)

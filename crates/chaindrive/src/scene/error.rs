@@ -10,7 +10,7 @@ use crate::plain;
 pub struct Problem {
     /// Place in the scene, such as `sprockets[1].teeth`; empty for the text as a whole.
     pub path: String,
-    /// Place in the text; absent in JSON, whose values carry none, and where an option or argument gave the value.
+    /// Place in the text; absent where an option, an argument or a program gave the value.
     pub place: Option<Place>,
     /// The mistake, with the offending value.
     pub message: String,

@@ -16,7 +16,7 @@ use super::place::Place;
 const LARGEST: u64 = 16 << 20;
 
 /// Deepest nesting of tables and lists. The format itself needs eight levels.
-pub(super) const DEEPEST: usize = 32;
+const DEEPEST: usize = 32;
 
 /// Most values of a text: a table of half a million pairs.
 const MOST_VALUES: usize = 1_000_000;

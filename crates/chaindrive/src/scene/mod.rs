@@ -199,7 +199,7 @@ impl Scene {
             tree.take_places(None);
             Ok(tree)
         };
-        Self::parsed(placeless, json, name)
+        Self::parsed(placeless, json, name).map_err(SceneError::nowhere)
     }
 
     fn parsed(

@@ -82,14 +82,6 @@ impl<'t> Lines<'t> {
         }
     }
 
-    /// Place of a part of the text itself; none for another text.
-    pub(crate) fn of(&self, part: &str) -> Option<Place> {
-        let begin = self.text.as_ptr().addr();
-        let from = part.as_ptr().addr().checked_sub(begin)?;
-        let bytes = from..from + part.len();
-        (bytes.end <= self.text.len()).then(|| self.at(bytes))
-    }
-
     /// Place of some bytes, as far as they stand on one line.
     pub(crate) fn at(&self, bytes: Range<usize>) -> Place {
         let line = self.starts.partition_point(|&start| start <= bytes.start);

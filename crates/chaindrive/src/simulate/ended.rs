@@ -22,18 +22,13 @@ impl Simulation {
         [self.ended[1].len(), self.struck[1].len()]
     }
 
-    /// Hands out what ended until a reading. A step that may be taken back keeps its own.
-    pub(super) fn hand_over_until(&mut self, time: f64) {
-        let within = time < self.time();
-        let first = match &mut self.before {
-            Some(before) if within => std::mem::take(&mut before.gathered),
-            _ => self.gathered(),
+    /// Hands out what ended since the last reading. A step that may be taken back keeps its own: while the drive before it is kept, nothing that
+    /// ended in it has been handed out.
+    pub(super) fn hand_out_ended(&mut self) {
+        let [contacts, impacts] = match &mut self.before {
+            Some(before) => std::mem::take(&mut before.gathered),
+            None => self.gathered(),
         };
-        self.hand_over(first);
-    }
-
-    /// Hands out the first contacts and impacts of those since the last reading.
-    pub(super) fn hand_over(&mut self, [contacts, impacts]: [usize; 2]) {
         let zero = self.zero();
         move_first(&mut self.ended, contacts, |it| count_from(zero, it));
         move_first(&mut self.struck, impacts, |it| it.time -= zero);

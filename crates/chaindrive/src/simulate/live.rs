@@ -106,7 +106,7 @@ impl Simulation {
         }
         let reached = self.step_towards(t, budget, Changes::AtTheEnd)?;
         if reached {
-            self.hand_over_until(t);
+            self.hand_out_ended();
         }
         Ok(reached)
     }

@@ -17,10 +17,10 @@ pub(crate) struct Sample {
 }
 
 impl Simulation {
-    /// Reads everything off the state at a time \[s\] within the last step, and gathers what ended since the last sample.
+    /// Reads everything off the state at a time \[s\] within the last step, and hands out what ended since the last reading.
     pub(super) fn sample(&mut self, time: f64) {
         self.observe(time);
-        self.hand_over_until(time);
+        self.hand_out_ended();
     }
 
     /// Goes on to a time \[s\] and takes a sample there; with the drive as it stood before the last step, where one is wanted.

@@ -131,7 +131,7 @@ impl Simulation {
         self.gather();
         if steps > 0 {
             self.read = self.time();
-            self.hand_over(self.gathered());
+            self.hand_out_ended();
         }
         Ok(self.read)
     }

@@ -1,6 +1,8 @@
 //! Stepping from outside: pieces, inputs and snapshots, to the bit.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
+use std::time::Duration;
+
 use chaindrive::{
     Assembled, Channel, ContactEvent, Control, EventKinds, Flow, Impact, Observation, Run, Scene,
     Simulation, Snapshot, Stepping,
@@ -326,10 +328,8 @@ fn steps_land_on_the_knots_of_a_table() {
     assert!(after < before, "{step:?}: {after} s, {before} s");
 }
 
-/// Contacts and impacts are handed out once, whenever one reads, whatever is set there and taken back.
-#[test]
-fn what_ended_is_handed_out_once() {
-    let scene = preset("marine_two_sprockets");
+/// A drive whose contacts are logged.
+fn logged() -> Simulation {
     let run = Run {
         events: EventKinds {
             teeth: true,
@@ -339,25 +339,31 @@ fn what_ended_is_handed_out_once() {
         until: 0.2,
         ..Run::default()
     };
-    let assembled = assembled(&scene);
-    let begin = || Simulation::from_assembled(assembled.clone(), &run).unwrap();
-    let torque = Control::Torque("camshaft".into());
-    let changes = (1..40).map(|k| (5e-3 * f64::from(k) + 1.7e-7, 100.0 * f64::from(k % 3)));
-    let changes: Vec<(f64, f64)> = changes.collect();
-    let told = |of: &Simulation| format!("{:?} {:?}", of.events(), of.impacts());
+    let assembled = assembled(&preset("marine_two_sprockets"));
+    Simulation::from_assembled(assembled, &run).unwrap()
+}
 
-    let mut planned = begin();
-    for (time, value) in &changes {
-        planned.set_at(*time, &torque, *value).unwrap();
+/// Times \[s\] and torques \[N m\].
+fn changes() -> impl Iterator<Item = (f64, f64)> {
+    (1..40).map(|k| (5e-3 * f64::from(k) + 1.7e-7, 100.0 * f64::from(k % 3)))
+}
+
+/// Contacts and impacts are handed out once, whenever one reads, whatever is set there and taken back.
+#[test]
+fn what_ended_is_handed_out_once() {
+    let torque = Control::Torque("camshaft".into());
+    let told = |of: &Simulation| format!("{:?} {:?}", of.events(), of.impacts());
+    let mut planned = logged();
+    for (time, value) in changes() {
+        planned.set_at(time, &torque, value).unwrap();
     }
-    let mut by_reading = planned.clone();
+    let mut by_step = planned.clone();
     let [mut of_samples, mut of_readings, mut of_steps] = [(); 3].map(|()| Log::default());
     while planned.next_sample().unwrap().is_some() {
         of_samples.take(&planned);
     }
-
-    let mut set = begin();
-    for (time, value) in changes {
+    let mut set = logged();
+    for (time, value) in changes() {
         set.advance_to(time).unwrap();
         of_readings.take(&set);
         let copy = set.snapshot();
@@ -371,23 +377,56 @@ fn what_ended_is_handed_out_once() {
         assert_eq!(told(&set), first);
         of_readings.take(&set);
     }
-    while by_reading.time() < 0.2 {
-        by_reading.step(1).unwrap();
-        of_steps.take(&by_reading);
+    while by_step.time() < 0.2 {
+        by_step.step(1).unwrap();
+        of_steps.take(&by_step);
     }
-    let least = of_samples.impacts.len() / 2;
-    assert!(least > 3 && of_samples.events.len() > 10);
-    for (which, log) in [("readings", of_readings), ("steps", of_steps)] {
-        let events = log.events.len().min(of_samples.events.len());
-        assert!(log.impacts.len() > least, "{which}");
-        assert_eq!(log.events[..events], of_samples.events[..events], "{which}");
-        let impacts = log.impacts.len().min(of_samples.impacts.len());
-        assert_eq!(
-            log.impacts[..impacts],
-            of_samples.impacts[..impacts],
-            "{which}"
-        );
+    of_readings.begins_as(&of_samples);
+    of_steps.begins_as(&of_samples);
+}
+
+/// So they are where a step ends at the reading, and is taken back after the drive has gone on.
+#[test]
+fn what_ended_is_handed_out_once_at_the_end_of_a_step() {
+    let torque = Control::Torque("camshaft".into());
+    let mut planned = logged();
+    for (time, value) in changes() {
+        planned.set_at(time, &torque, 1.0).unwrap();
+        planned.set_at(time, &torque, value).unwrap();
     }
+    let [mut of_samples, mut of_readings] = [(); 2].map(|()| Log::default());
+    while planned.next_sample().unwrap().is_some() {
+        of_samples.take(&planned);
+    }
+    let mut set = logged();
+    for (time, value) in changes() {
+        set.set_at(time, &torque, 1.0).unwrap();
+        set.advance_to(time).unwrap();
+        of_readings.take(&set);
+        while set.time() <= time {
+            let budget = Duration::from_micros(1);
+            assert!(!set.advance_towards(time + 4e-3, budget).unwrap());
+        }
+        set.set(&torque, value).unwrap();
+    }
+    of_readings.begins_as(&of_samples);
+
+    // Samples that lie within the step that ended at a reading.
+    let mut mixed = logged();
+    let mut log = Log::default();
+    let mut next = 0.0;
+    for (time, value) in changes() {
+        while next < time - 1e-6 {
+            mixed.next_sample().unwrap();
+            log.take(&mixed);
+            next = mixed.observation().time + 2e-3;
+        }
+        mixed.set_at(time, &torque, 1.0).unwrap();
+        mixed.set_at(time, &torque, value).unwrap();
+        mixed.advance_to(time).unwrap();
+        log.take(&mixed);
+    }
+    log.begins_as(&of_samples);
 }
 
 /// What a simulation handed out.
@@ -401,5 +440,14 @@ impl Log {
     fn take(&mut self, from: &Simulation) {
         self.events.extend_from_slice(from.events());
         self.impacts.extend_from_slice(from.impacts());
+    }
+
+    /// It is the other one, as far as that goes on longer.
+    fn begins_as(&self, whole: &Self) {
+        let events = self.events.len().min(whole.events.len());
+        let impacts = self.impacts.len().min(whole.impacts.len());
+        assert!(impacts > 4 && 2 * impacts > whole.impacts.len() && events > 10);
+        assert_eq!(self.events[..events], whole.events[..events]);
+        assert_eq!(self.impacts[..impacts], whole.impacts[..impacts]);
     }
 }

@@ -272,7 +272,7 @@ fn problems_in_json_have_places() {
     // Unknown keys are shown themselves, whatever is written with escapes before them.
     let error = fails(r#"{"title": "µ \u00b5", "chain": {"type": "16B-1", "linkz": 4}}"#);
     let place = error.problems[0].place.expect("it stands in the text");
-    assert_eq!(place.columns, Some([51, 56]), "{error}");
+    assert_eq!(place.columns, Some([50, 57]), "{error}");
     let error = Scene::from_data(text, "mine").unwrap_err();
     assert!(
         error.to_string().starts_with("mine: chain.pitch: `3 rpm`"),
@@ -283,8 +283,13 @@ fn problems_in_json_have_places() {
 #[test]
 fn a_key_of_json_stands_once() {
     let error = fails("{\"chain\": {\"links\": 4,\n \"links\": 6}}");
-    let text = "test.toml:2:3: the key `links` stands twice in this table; keep one of them";
+    let text = "test.toml:2:2: the key `links` stands twice in this table; keep one of them";
     assert_eq!(error.to_string(), text);
+    let error = fails(r#"{"chain": {"links": 4}, "chain": {"pitch": 3}}"#);
+    assert!(
+        error.to_string().contains("the key `chain` stands twice"),
+        "{error}"
+    );
     // An entry that is null is absent, not another one.
     fails(r#"{"chain": {"links": 4, "mass": null}, "title": null}"#);
 }

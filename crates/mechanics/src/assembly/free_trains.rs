@@ -248,7 +248,7 @@ pub(super) fn let_go(system: &mut System, moving: &[usize]) {
 const ROUNDING: f64 = 1e-12;
 
 /// Puts the torques back.
-pub(super) fn release(system: &mut System, torques: Torques) {
+pub(super) fn restore_torques(system: &mut System, torques: Torques) {
     for (shaft, [drive, load]) in system.bodies.shafts.iter_mut().zip(torques) {
         (shaft.drive, shaft.load) = (drive, load);
     }
