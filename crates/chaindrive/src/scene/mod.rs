@@ -189,7 +189,7 @@ impl Scene {
     /// ```
     /// use chaindrive::Scene;
     ///
-    /// let scene = serde_json::json!({ "chain": "16B-9" });
+    /// let scene = serde_json::json!({ "chain": { "pitch": "3 rpm" } });
     /// let error = Scene::from_data(&scene.to_string(), "mine").unwrap_err();
     /// assert!(error.problems.iter().all(|problem| problem.place.is_none()));
     /// ```
