@@ -1,4 +1,4 @@
-//! Places of the values in a text of JSON, which the parser of the values does not tell.
+//! Places of values in a text of JSON. The parser of the values knows none.
 
 use std::collections::HashSet;
 
@@ -11,7 +11,7 @@ use super::place::{Lines, Place};
 use super::tree::{Node, Value};
 
 impl Lines<'_> {
-    /// Gives the places in a text to the tree that was made of it.
+    /// Gives a tree the places of its values in its text.
     ///
     /// # Errors
     /// A key that stands twice in an object: readers of JSON differ in which of the values they take.

@@ -160,6 +160,10 @@ impl Simulation {
         let moving = self.recalled(&snapshot.moving)?;
         if let Some(before) = &snapshot.before {
             self.recalled(&before.moving)?;
+            let all = [snapshot.ended[1].len(), snapshot.struck[1].len()];
+            if before.gathered.iter().zip(all).any(|(own, all)| *own > all) {
+                return Err(SnapshotError::Other);
+            }
         }
         self.before = snapshot.before.clone().map(Box::new);
         self.moving = moving;

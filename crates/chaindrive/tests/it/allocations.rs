@@ -12,7 +12,7 @@ use crate::live::{loose, preset, start};
 /// Steps in which every list grows to its length, and steps after them.
 const STEPS: [u32; 2] = [1500, 500];
 
-/// How many of the later steps allocate, each read into a view of all channels.
+/// Number of later steps with an allocation, each read into a view of all channels.
 fn allocating_steps(scene: &Scene) -> usize {
     let mut simulation = start(scene, Stepping::Auto);
     let channels = Channel::ALL.iter().copied();

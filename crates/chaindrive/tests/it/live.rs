@@ -385,7 +385,7 @@ fn what_ended_is_handed_out_once() {
     of_steps.begins_as(&of_samples);
 }
 
-/// So they are where a step ends at the reading, and is taken back after the drive has gone on.
+/// The same at the end of a step, taken back after the drive has gone on.
 #[test]
 fn what_ended_is_handed_out_once_at_the_end_of_a_step() {
     let torque = Control::Torque("camshaft".into());
@@ -411,7 +411,7 @@ fn what_ended_is_handed_out_once_at_the_end_of_a_step() {
     }
     of_readings.begins_as(&of_samples);
 
-    // Samples that lie within the step that ended at a reading.
+    // Samples within a step, after a reading at its end.
     let mut mixed = logged();
     let mut log = Log::default();
     let mut next = 0.0;
@@ -429,7 +429,7 @@ fn what_ended_is_handed_out_once_at_the_end_of_a_step() {
     log.begins_as(&of_samples);
 }
 
-/// What a simulation handed out.
+/// Contacts and impacts handed out by a simulation.
 #[derive(Default)]
 struct Log {
     events: Vec<ContactEvent>,
@@ -442,7 +442,7 @@ impl Log {
         self.impacts.extend_from_slice(from.impacts());
     }
 
-    /// It is the other one, as far as that goes on longer.
+    /// Agreement with another log, as far as both go.
     fn begins_as(&self, whole: &Self) {
         let events = self.events.len().min(whole.events.len());
         let impacts = self.impacts.len().min(whole.impacts.len());
