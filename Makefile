@@ -20,13 +20,16 @@ VERDICTS := $(abspath target/verdicts.jsonl)
 # Cargo builds the bindings for the interpreter in .venv, whatever else is on the path.
 export PYO3_PYTHON := $(abspath $(BIN)/python)
 
-# One code generation for tests, command and wheel: the profile `release`, with its checks of overflow.
+# What is run and tested here has one code generation, the profile `quick`. What ships and what is measured has `release`: the same
+# bits, optimised throughout.
+QUICK := --profile quick
+
 # All crates at once, the bindings included, so that libraries have the same features and no crate is compiled twice.
 # nextest where it is installed, otherwise Cargo's own runner.
 ifneq ($(shell command -v cargo-nextest 2>/dev/null),)
-CARGO_TEST := cargo nextest run --cargo-profile release --workspace --tests --status-level slow --final-status-level slow --no-fail-fast
+CARGO_TEST := cargo nextest run --cargo-profile quick --workspace --tests --status-level slow --final-status-level slow --no-fail-fast
 else
-CARGO_TEST := cargo test --release --workspace --quiet --no-fail-fast --tests
+CARGO_TEST := cargo test $(QUICK) --workspace --quiet --no-fail-fast --tests
 endif
 
 # A crate outside of the workspace, for which Cargo builds ours once more: hardly optimised, and with the libraries of the workspace as far as they have
@@ -63,8 +66,8 @@ check: check-rust check-python ## Check format, lints, documentation and types
 check-rust: $(VENV)/ready
 	cargo fmt --all --check
 	cargo fmt --manifest-path examples/own_laws/Cargo.toml --check
-	cargo clippy --release --workspace --all-targets -- -D warnings
-	RUSTDOCFLAGS='-D warnings' cargo doc --release --workspace --no-deps --quiet
+	cargo clippy $(QUICK) --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS='-D warnings' cargo doc $(QUICK) --workspace --no-deps --quiet
 
 check-python: setup $(VENV)/test-ready
 	$(BIN)/ruff format --check .
@@ -74,7 +77,7 @@ check-python: setup $(VENV)/test-ready
 
 test-rust: $(VENV)/ready
 	$(CARGO_TEST)
-	cargo test --release --workspace --quiet --doc
+	cargo test $(QUICK) --workspace --quiet --doc
 	$(OWN_LAWS)
 
 test-python: setup $(VENV)/test-ready
@@ -83,32 +86,32 @@ test-python: setup $(VENV)/test-ready
 bench: ## Measure kernels and steps
 	cargo bench
 
-report: setup $(VENV)/test-ready ## Measure speed and error on this machine, and write docs/how-fast-how-accurate.md
+report: $(VENV)/shipped $(VENV)/test-ready ## Measure speed and error on this machine, and write docs/how-fast-how-accurate.md
 	$(BIN)/python benchmarks/report
 
 estimates: ## Hold what runs say of their error against a reference, and write docs/estimates.md
 	cargo run --release --quiet -p chaindrive --example estimates > docs/estimates.md
 
-bicycle-losses: setup $(VENV)/test-ready ## Find where the watts of a rider go, and write docs/bicycle-losses.md
+bicycle-losses: $(VENV)/shipped $(VENV)/test-ready ## Find where the watts of a rider go, and write docs/bicycle-losses.md
 	$(BIN)/python benchmarks/bicycle_losses
 
-how-real: setup $(VENV)/test-ready ## Try the assumptions and models of presets, and write docs/how-real.md
+how-real: $(VENV)/shipped $(VENV)/test-ready ## Try the assumptions and models of presets, and write docs/how-real.md
 	$(BIN)/python benchmarks/how_real
 
 validation: setup $(VENV)/test-ready ## Run the slow studies as well
-	cargo test --release --workspace --tests -- --include-ignored
+	cargo test $(QUICK) --workspace --tests -- --include-ignored
 	$(BIN)/pytest -m 'slow or not slow'
 
 validation-report: setup $(VENV)/test-ready ## Run the tests that judge validation cases, and write docs/validation.md
 	rm -f $(VERDICTS)
 	@# A test that fails has left its miss behind: the report comes before the failure.
 	export CHAINDRIVE_VERDICTS=$(VERDICTS); failed=0; \
-	cargo test --release --workspace --tests --quiet --no-fail-fast -- --include-ignored validation || failed=1; \
+	cargo test $(QUICK) --workspace --tests --quiet --no-fail-fast -- --include-ignored validation || failed=1; \
 	$(BIN)/pytest -m 'slow or not slow' -k 'measured or validation_report' || failed=1; \
 	$(BIN)/python tests/validation/report.py $(VERDICTS) && exit $$failed
 
 docs: ## Build the reference of the Rust crates in target/doc
-	RUSTDOCFLAGS='-D warnings' cargo doc --release --workspace --no-deps
+	RUSTDOCFLAGS='-D warnings' cargo doc $(QUICK) --workspace --no-deps
 
 pages: setup $(VENV)/site-ready docs ## Build the documentation in target/site; tutorials are run
 	rm -rf target/site
@@ -167,16 +170,25 @@ $(VENV)/wheels-ready: $(VENV)/ready
 	$(PIP) --group wheels
 	@touch $@
 
-# The wheel, as a user would get it. The stamp is as old as the start of the build: what changes
-# meanwhile is built the next time.
-$(VENV)/installed: $(VENV)/ready $(SOURCES)
+# The package, in the profile of tests or in that which ships: one of them is installed. The stamp is as old as the start of the build:
+# what changes meanwhile is built the next time.
+define install # PROFILE, OTHER STAMP
 	@touch $@.begun
+	@rm -f $(2)
 	rm -rf target/wheels/chaindrive-*.whl
-	@echo "Building the core in release: some four minutes on two cores the first time, and what changed later on."
 	@# The library of functional mock-up units; with the bindings, so that both are of the same compiled crates.
-	cargo build --release --quiet -p chaindrive-python -p chaindrive-fmu
+	cargo build --profile $(1) --quiet -p chaindrive-python -p chaindrive-fmu
 	mkdir -p python/chaindrive/library
-	cp $(addprefix target/release/,$(FMU_LIBRARY)) python/chaindrive/library/
-	$(BIN)/maturin build --release --quiet --interpreter $(BIN)/python --out target/wheels
+	cp target/$(1)/$(FMU_LIBRARY) python/chaindrive/library/
+	$(BIN)/maturin build --profile $(1) --quiet --interpreter $(BIN)/python --out target/wheels
 	$(PIP) --force-reinstall --no-deps target/wheels/chaindrive-*.whl
 	@mv $@.begun $@
+endef
+
+$(VENV)/installed: $(VENV)/ready $(SOURCES)
+	@echo "Building the core: some three minutes on two cores the first time, and what changed later on."
+	$(call install,quick,$(VENV)/shipped)
+
+$(VENV)/shipped: $(VENV)/ready $(SOURCES)
+	@echo "Building the core as it ships: some six minutes on two cores the first time, and what changed later on."
+	$(call install,release,$(VENV)/installed)

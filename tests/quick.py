@@ -85,7 +85,7 @@ def test_crate(crate: str, changed: list[str]) -> None:
     # With the bindings, of which nothing is built, libraries have the features that they have in
     # `make test` and in the wheel.
     selected = ["-p", manifest["package"]["name"], "-p", "chaindrive-python"]
-    command = ["cargo", "test", "--release", "--quiet", *selected]
+    command = ["cargo", "test", "--profile", "quick", "--quiet", *selected]
     rooms = (
         "crates/chaindrive/src/scene/",
         "crates/chaindrive/src/catalogue/",

@@ -95,6 +95,7 @@ def test_provenance_reproduces_the_run():
     story = run.attrs
     assert story["chaindrive_version"] == cd.__version__
     assert story["chaindrive_build"] == cd.__build__
+    assert story["chaindrive_profile"] in ("quick", "release")
     assert story["instruction_set"] in ("sse2", "avx2", "avx512", "neon", "baseline")
     assert story["title"] == drive.title
     assert story["steps"] > 0

@@ -31,6 +31,8 @@ pub struct Build {
     pub target: &'static str,
     /// Features of the processor that the compiler may use everywhere, with commas between.
     pub features: &'static str,
+    /// Profile of Cargo, such as `release`: it decides about speed, and is no part of the identity.
+    pub profile: &'static str,
     /// Laws of other crates with their revisions, such as `friction:stribeck=1`.
     pub laws: Vec<String>,
     /// The identity: version, a hash of all that stands above, and the laws, such as `0.2.0-5f3a9c01d2e47b66+friction:stribeck=1`.
@@ -55,6 +57,7 @@ impl Build {
                 compiler: env!("CHAINDRIVE_COMPILER"),
                 target: env!("CHAINDRIVE_TARGET"),
                 features: env!("CHAINDRIVE_FEATURES"),
+                profile: env!("CHAINDRIVE_PROFILE"),
                 laws: Vec::new(),
                 id: String::new(),
             };
@@ -76,6 +79,7 @@ impl fmt::Display for Build {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.id.is_empty() {
             writeln!(f, "build         {}", self.id)?;
+            writeln!(f, "profile       {}", self.profile)?;
         }
         for (name, hash) in self.sources {
             writeln!(f, "  {name:<12}{hash}")?;
@@ -184,6 +188,23 @@ mod tests {
             hash.len() == 16 && u64::from_str_radix(hash, 16).is_ok(),
             "{id}"
         );
+    }
+
+    #[test]
+    fn the_profile_is_told_and_is_no_part_of_the_identity() {
+        let here = Build::here();
+        assert!(
+            here.to_string()
+                .contains(&format!("\nprofile       {}\n", here.profile))
+        );
+        let hashed = Build {
+            id: String::new(),
+            laws: Vec::new(),
+            ..here.clone()
+        };
+        let hash = xxh3_64(hashed.to_string().as_bytes());
+        assert!(here.id.contains(&format!("-{hash:016x}")), "{}", here.id);
+        assert!(!hashed.to_string().contains("profile"));
     }
 
     #[test]

@@ -66,6 +66,8 @@ pub fn emit(data: &[&str]) {
 /// Tells the core, beside its own sources, what else decides about bits: `CHAINDRIVE_COMPILER`, `CHAINDRIVE_TARGET`,
 /// `CHAINDRIVE_FEATURES` and `CHAINDRIVE_LIBRARIES`, the versions of the libraries that are named, as the lock file has them.
 ///
+/// `CHAINDRIVE_PROFILE` is told beside them: the profile of Cargo decides about speed and about no bit.
+///
 /// # Panics
 /// If there is no lock file: a build whose libraries are unknown has no identity.
 pub fn emit_surroundings(libraries: &[&str]) {
@@ -78,6 +80,8 @@ pub fn emit_surroundings(libraries: &[&str]) {
     println!("cargo::rustc-env=CHAINDRIVE_FEATURES={features}");
     let manifest = PathBuf::from(variable("CARGO_MANIFEST_DIR"));
     let output = PathBuf::from(variable("OUT_DIR"));
+    let profile = profile(&output).map_or_else(|| variable("PROFILE"), str::to_owned);
+    println!("cargo::rustc-env=CHAINDRIVE_PROFILE={profile}");
     let own = (variable("CARGO_PKG_NAME"), variable("CARGO_PKG_VERSION"));
     let lock = libraries::lock_file(&manifest, &output, &own).unwrap_or_else(|| {
         panic!(
@@ -89,6 +93,15 @@ pub fn emit_surroundings(libraries: &[&str]) {
     let text = fs::read_to_string(&lock).expect("the lock file was found by reading it");
     let versions = versions(&text, libraries).join(" ");
     println!("cargo::rustc-env=CHAINDRIVE_LIBRARIES={versions}");
+}
+
+/// Name of the profile, by the folder `target/…/PROFILE/build/PACKAGE/out` of a build script: the variable `PROFILE` names only
+/// which of `debug` and `release` a profile inherits.
+fn profile(output: &Path) -> Option<&str> {
+    let mut above = output.ancestors().skip(2);
+    let build = above.next()?.file_name()?;
+    let profile = above.next()?.file_name()?.to_str()?;
+    (build == "build").then_some(if profile == "debug" { "dev" } else { profile })
 }
 
 fn variable(name: &str) -> String {
@@ -229,6 +242,22 @@ mod tests {
         ];
         for (case, hash) in other.iter().enumerate() {
             assert_ne!(*hash, own, "{case}");
+        }
+    }
+
+    #[test]
+    fn the_profile_is_that_of_the_folder() {
+        for (output, name) in [
+            ("target/quick/build/chaindrive-1f/out", Some("quick")),
+            (
+                "target/aarch64-apple-darwin/release/build/chaindrive-1f/out",
+                Some("release"),
+            ),
+            ("target/debug/build/chaindrive-1f/out", Some("dev")),
+            ("elsewhere/chaindrive/1f/out", None),
+            ("out", None),
+        ] {
+            assert_eq!(profile(Path::new(output)), name, "{output}");
         }
     }
 

@@ -88,6 +88,7 @@ mod core {
         let origin = [
             ("chaindrive_version", build.version),
             ("chaindrive_build", &id),
+            ("chaindrive_profile", build.profile),
             ("instruction_set", &instruction_set),
         ];
         module.add("__build__", &build.id)?;

@@ -45,6 +45,7 @@ impl Story {
         let origin = Origin::here();
         story.text("chaindrive_version", Build::here().version);
         story.text("chaindrive_build", &origin.build);
+        story.text("chaindrive_profile", Build::here().profile);
         story.text("instruction_set", &origin.instruction_set);
         story.text("status", ending.status());
         story.count("complete", u64::from(*ending == Ending::Complete));
