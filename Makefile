@@ -32,13 +32,6 @@ else
 CARGO_TEST := cargo test $(QUICK) --workspace --quiet --no-fail-fast --tests
 endif
 
-# A crate outside of the workspace, for which Cargo builds ours once more: hardly optimised, and with the libraries of the workspace as far as they have
-# the same features. Kernels on wide registers would then take more stack than a thread has.
-SLOWLY := $(foreach crate,geometry contact integrate mechanics,\
-	--config profile.release.package.chaindrive-$(crate).opt-level=0 --config profile.release.package.chaindrive-$(crate).codegen-units=16)
-OWN_LAWS := CHAINDRIVE_INSTRUCTION_SET=sse2 cargo test --release --quiet --manifest-path examples/own_laws/Cargo.toml \
-	--target-dir target --config Cargo.toml $(SLOWLY)
-
 .DEFAULT_GOAL := help
 .PHONY: help setup run test quick slowest check check-rust check-python test-rust test-python bench report estimates bicycle-losses how-real validation validation-report docs pages site wheels clean
 # A build that failed leaves no stamp behind.
@@ -65,7 +58,6 @@ check: check-rust check-python ## Check format, lints, documentation and types
 # In the profile of the tests, so that procedural macros and build scripts are built once.
 check-rust: $(VENV)/ready
 	cargo fmt --all --check
-	cargo fmt --manifest-path examples/own_laws/Cargo.toml --check
 	cargo clippy $(QUICK) --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS='-D warnings' cargo doc $(QUICK) --workspace --no-deps --quiet
 
@@ -78,7 +70,6 @@ check-python: setup $(VENV)/test-ready
 test-rust: $(VENV)/ready
 	$(CARGO_TEST)
 	cargo test $(QUICK) --workspace --quiet --doc
-	$(OWN_LAWS)
 
 test-python: setup $(VENV)/test-ready
 	$(BIN)/pytest --numprocesses 2 --dist loadfile

@@ -1,4 +1,4 @@
-//! Which libraries are a part of the identity of a build.
+//! Which libraries are a part of the identity of a build, and which features they have.
 
 use std::collections::BTreeSet;
 use std::process::Command;
@@ -13,33 +13,58 @@ const CARRIERS: &str = "aligned-vec allocator-api2 arrayvec bitflags bytemuck cf
 /// Libraries above the forces whose numbers get into results, or into the bytes of checkpoints.
 const ABOVE: [&str; 2] = ["hdrhistogram", "postcard"];
 
+/// What `cargo tree` tells of the workspace, a line a package.
+fn tree(arguments: &[&str]) -> String {
+    let told = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        .args(["tree", "--offline", "--locked", "--prefix", "none"])
+        .arg("--manifest-path")
+        .arg(super::root().join("Cargo.toml"))
+        .args(arguments)
+        .output()
+        .unwrap();
+    let problem = String::from_utf8_lossy(&told.stderr);
+    assert!(told.status.success(), "{problem}");
+    String::from_utf8(told.stdout).unwrap()
+}
+
+/// The example of laws asks nothing of a library that the others do not: otherwise the tests would compile it twice.
+#[test]
+fn the_example_of_laws_adds_no_feature() {
+    let features = |more: &[&str]| -> BTreeSet<String> {
+        let told = tree(
+            &[
+                &[
+                    "--workspace",
+                    "--edges",
+                    "normal,build,dev",
+                    "--format",
+                    "{p} {f}",
+                ],
+                more,
+            ]
+            .concat(),
+        );
+        let lines = told.lines().map(|line| line.trim_end_matches(" (*)"));
+        lines
+            .filter(|line| !line.starts_with("own-laws "))
+            .map(str::to_owned)
+            .collect()
+    };
+    let [with, without] = [features(&[]), features(&["--exclude", "own-laws"])];
+    assert!(with.len() > 100, "{with:?}");
+    let more: Vec<_> = with.symmetric_difference(&without).collect();
+    assert!(more.is_empty(), "{more:?}");
+}
+
 /// A library that comes to the forces is either a part of the identity, or said to compute nothing.
 #[test]
 fn the_identity_names_all_libraries_that_compute() {
-    let manifest = super::root().join("Cargo.toml");
-    let mut tree = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    tree.args([
-        "tree",
-        "--offline",
-        "--locked",
-        "--prefix",
-        "none",
-        "--manifest-path",
-    ]);
-    tree.arg(manifest);
-    tree.args([
+    let told = tree(&[
         "--edges",
         "normal,no-proc-macro",
         "--package",
         "chaindrive-mechanics",
     ]);
-    let told = tree.output().unwrap();
-    assert!(
-        told.status.success(),
-        "{}",
-        String::from_utf8_lossy(&told.stderr)
-    );
-    let told = String::from_utf8(told.stdout).unwrap();
     let names = told
         .lines()
         .filter_map(|line| line.split_whitespace().next());
