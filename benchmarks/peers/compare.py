@@ -11,6 +11,7 @@ import argparse
 import importlib.util
 import json
 import os
+import re
 import statistics
 import sys
 import warnings
@@ -22,12 +23,13 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS")
     os.environ.setdefault(variable, "1")
 
 from measure import error, load, tight_tension  # noqa: E402
-from provenance import machine, told  # noqa: E402
+from provenance import dated, machine, told  # noqa: E402
 
 FOLDER = Path(__file__).parent
 RESULTS = FOLDER / "results.json"
 ALLOWED = 0.02  # error at which programs are compared [–]
 BEGIN, END = "<!-- written by compare.py -->", "<!-- until here -->"
+DATED = re.compile(r"^Measured with chaindrive .*$", re.MULTILINE)
 SEVENTH = 1e-4 / 7  # a step between 20 and 10 µs that divides the sampling interval [s]
 TRANSIENT = 0.01  # left out of the mean [s]
 
@@ -288,9 +290,10 @@ def account(results):
 
 
 def write_account(results):
-    """Put the results into the README, between its two marks."""
+    """Put the results between the marks of the README, and their date into its first line."""
     file = FOLDER / "README.md"
     before, rest = file.read_text(encoding="utf-8").split(BEGIN)
+    before = DATED.sub(dated(results["machine"]), before, count=1)
     after = rest.split(END)[1]
     file.write_text(f"{before}{BEGIN}\n{account(results)}{END}{after}", encoding="utf-8")
 

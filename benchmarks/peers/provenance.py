@@ -76,3 +76,9 @@ def told(about: dict[str, Any]) -> str:
         f"Python {about['python']}; {versions}; library {about['library']}, "
         f"commit {about['commit']}; {about['date']}"
     )
+
+
+def dated(machine: dict[str, Any]) -> str:
+    """Say in one line of which version and day a measurement is; it stands first on its page."""
+    version, day = machine["versions"]["chaindrive"], machine["date"][:10]
+    return f"Measured with chaindrive {version} on {day}; not repeated since."

@@ -12,6 +12,7 @@ import os
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 # One thread each, before anything that could open more is imported.
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"):
@@ -47,12 +48,14 @@ PARTS = (
 )
 
 
-def head(page: Page, begun: str, missing: list[str]) -> list[str]:
-    """Return what stands above the parts: origin, yardstick, targets."""
+def head(page: Page, origin: dict[str, Any], begun: str, missing: list[str]) -> list[str]:
+    """Return what stands above the parts: date, origin, yardstick, targets."""
     above = Page(page.quick, page.folder, page.yardstick)
     yardstick = np.array(page.yardstick.found)
     above.add(
         "# How fast, how accurate",
+        "",
+        provenance.dated(origin),
         "",
         "Written by `make report`; nothing on this page is typed by hand. Every target that was "
         "set is listed with what was found, met or not.",
@@ -82,7 +85,8 @@ def main() -> None:
     if unknown:
         parser.error(f"unknown part {', '.join(sorted(unknown))}; there are {', '.join(PARTS)}")
     arguments.docs.mkdir(parents=True, exist_ok=True)
-    begun = f"{provenance.told(provenance.machine())}; load {os.getloadavg()[0]:.1f} at the start"
+    origin = provenance.machine()
+    begun = f"{provenance.told(origin)}; load {os.getloadavg()[0]:.1f} at the start"
     page = Page(arguments.quick, arguments.docs, Yardstick())
     parts = arguments.parts or PARTS
     file = page.folder / "how-fast-how-accurate.md"
@@ -93,10 +97,10 @@ def main() -> None:
         print(f"{part}: {time.time() - begin:.0f} s", file=sys.stderr, flush=True)
         if not arguments.parts:
             # A run that is stopped leaves what it found, and says what it lacks.
-            lines = head(page, begun, list(parts[done:])) + page.lines
+            lines = head(page, origin, begun, list(parts[done:])) + page.lines
             file.write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
     if arguments.parts:
-        print("\n".join(head(page, begun, [])))
+        print("\n".join(head(page, origin, begun, [])))
         return
     print(f"written to {file}", file=sys.stderr)
 

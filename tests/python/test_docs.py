@@ -67,17 +67,31 @@ def test_every_extra_is_explained(page):
     assert set(extras["optional-dependencies"]) <= told
 
 
+def sections(page):
+    """Return the names by which links ask for the sections of a page."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+    heads = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", "\n".join(re.findall(r"^#+ .*$", text, re.M)))
+    plain = [it.lstrip("# ") for it in heads.splitlines()]
+    marked = re.findall(r"^\(([\w-]+)\)=$", text, re.M)
+    return {re.sub(r"[^\w -]", "", it.lower()).replace(" ", "-") for it in plain} | set(marked)
+
+
 def test_pages_link_to_what_exists():
-    """Links of the README and of the documentation lead to files of the repository."""
-    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
+    """Links lead to files of the repository, and to sections that these have."""
+    pages = [ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")]
     dead = []
-    for page in pages:
+    for page in [*pages, *(ROOT / "docs").rglob("*.md")]:
         if page.parent.name == "scene":
             continue  # made with the site, which checks its own links
         for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8")):
-            place = target.split("#")[0]
-            made = "/scene/" in f"/{place}"
-            if place and not made and "://" not in place and not (page.parent / place).exists():
+            place, _, section = target.partition("#")
+            if "://" in place or "/scene/" in f"/{place}" or section.startswith("preset-"):
+                continue  # elsewhere, or made with the site
+            file = page.parent / place if place else page
+            known = file.exists()
+            if section and known and file.suffix == ".md":
+                known = section in sections(file)
+            if not known:
                 dead.append(f"{page.relative_to(ROOT)}: {target}")
     assert not dead
 

@@ -72,7 +72,9 @@ def test_readme_shows_the_results_on_file(peers):
     import compare
 
     results = json.loads(compare.RESULTS.read_text(encoding="utf-8"))
-    assert compare.account(results) in (FOLDER / "README.md").read_text(encoding="utf-8")
+    page = (FOLDER / "README.md").read_text(encoding="utf-8")
+    assert compare.account(results) in page
+    assert page.splitlines()[2] == compare.dated(results["machine"])
 
 
 def test_comparison_runs():
