@@ -24,18 +24,35 @@ from chaindrive import _core  # noqa: E402
 from chaindrive.signals import hear  # noqa: E402
 
 
-def _draw(verb: str, source: str, output: str, frames: int | None, *how: bool) -> int:
+def _draw(arguments: list[str], source: str, output: str, frames: int | None, *how: bool) -> int:
     """Make what matplotlib and imageio make, and the core does not."""
     from pathlib import Path
 
     overwrite, quiet = how
-    if verb == "report":
+    if arguments[1] == "report":
         from chaindrive import reporting
 
         return reporting.command(source, Path(output), overwrite=overwrite, quiet=quiet)
+    if arguments[1] == "bench":
+        from chaindrive import bench
+
+        files = Path(source), Path(output)
+        return bench.command(lambda: _core._cli(arguments), *files, overwrite=overwrite)
     from chaindrive import movies
 
     return movies.command(source, Path(output), frames=frames, overwrite=overwrite, quiet=quiet)
+
+
+def _run(arguments: list[str]) -> int:
+    """Run the command of the core; of its table pyarrow makes a stream where that is asked for."""
+    for at, argument in enumerate(arguments):
+        option, _, value = argument.rpartition("=")
+        if (option or arguments[at - 1], value) == ("--format", "arrow"):
+            from chaindrive import arrow_stream
+
+            arguments[at] = argument.replace("arrow", "csv")
+            return arrow_stream.command(arguments)
+    return _core._cli(arguments)
 
 
 def main() -> int:
@@ -50,7 +67,7 @@ def main() -> int:
 
             arguments += ["--library", str(LIBRARY)]
         drawn = _core._drawn(arguments)
-        return _core._cli(arguments) if drawn is None else _draw(arguments[1], *drawn)
+        return _run(arguments) if drawn is None else _draw(arguments, *drawn)
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED

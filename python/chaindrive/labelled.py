@@ -1,5 +1,7 @@
 """Labelled arrays of NumPy, without a wait for packages that have arrays of other kinds.
 
+Importing this module registers ``run.drive``, which whoever makes or opens a dataset wants.
+
 Where dask is installed, xarray imports it to look at the first array that it is given, and at the
 first one that becomes an index. That takes as long as xarray itself.
 """
@@ -7,6 +9,7 @@ first one that becomes an index. That takes as long as xarray itself.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -15,6 +18,12 @@ import xarray as xr
 from numpy.typing import NDArray
 
 __all__ = ["indexed", "labelled"]
+
+
+@xr.register_dataset_accessor("drive")  # type: ignore[no-untyped-call, untyped-decorator]
+def _drive(run: xr.Dataset) -> Any:
+    """Find the methods of a run by their name: they take most of the package, and nothing here."""
+    return import_module("chaindrive.accessor").DriveAccessor(run)
 
 
 def labelled(

@@ -12,10 +12,6 @@ import xarray as xr
 __all__ = ["Page", "page_of"]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
 class Page:
     """The page of a run, in the order of a design review and the units of the trade.
 

@@ -21,10 +21,6 @@ __all__ = ["Pose", "at_start", "drive_of", "figure_of", "recorded_at"]
 _Floats = NDArray[np.float64]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
 @dataclass
 class Pose:
     """Places: of bodies (bodies, 3), of rollers (rollers, 2) and plate ends (links, 4) a chain."""

@@ -34,10 +34,6 @@ _SIZE = (7.2, 3.6)
 _DOTS = 110
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
 def report(
     source: Drive | xr.Dataset | str | PathLike[str], path: str | PathLike[str] | None = None
 ) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
+import chaindrive.labelled  # noqa: F401  registers `run.drive`
 from chaindrive import _core
 from chaindrive.errors import ResultWarning, warn
 from chaindrive.extras import extra
@@ -111,8 +112,6 @@ def _is_left(stored: xr.Dataset, name: str) -> bool:
 
 
 def _open(name: Place) -> xr.Dataset:
-    import chaindrive.analysis.accessor  # noqa: F401  registers `run.drive`
-
     store: Any = name
     if isinstance(name, Objects):
         store = extra("zarr.storage", "stores").ObjectStore(name.store, read_only=True)

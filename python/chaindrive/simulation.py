@@ -288,8 +288,6 @@ def _given(arguments: Mapping[str, Any]) -> list[tuple[str, Any]]:
 
 def _concluded(result: Any, output: str | PathLike[str] | None) -> xr.Dataset:
     """Return what a run has left, or raise what stopped it."""
-    import chaindrive.analysis.accessor  # noqa: F401  registers `run.drive`
-
     if output is None:
         dataset = _dataset(result, json.loads(result["attributes"]))
     else:

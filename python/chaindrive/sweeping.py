@@ -292,8 +292,6 @@ def _counted(value: Any) -> Any:
 
 
 def _dataset(result: Mapping[str, Any]) -> xr.Dataset:
-    import chaindrive.analysis.accessor  # noqa: F401  registers `run.drive`
-
     coordinates: dict[str, Any] = {}
     swept = result["dims"]
     for name, path, unit, values in result["swept"]:

@@ -1,12 +1,15 @@
 """What the command prints for programs: JSON of the form that its schema says, and tables."""
 
+import csv
 import io
 import json
+import signal
 import subprocess
 import sys
 from typing import Any
 
 import jsonschema
+import numpy as np
 import pytest
 
 import chaindrive as cd
@@ -159,11 +162,71 @@ def test_arrow_has_the_numbers_of_the_table_and_their_units(tmp_path):
 
 def test_a_sweep_on_standard_output():
     table = stream(*SWEEP)
+    kinds = {str(field.type) for field in table.schema}
+    assert kinds == {"int64", "double", "string"}
     assert table.column("variant").to_pylist() == [0, 1]
     assert table.column("links").to_pylist() == [20, 24]
     text = command(*SWEEP, "-o", "-").stdout.splitlines()
     assert len(text) == 3
     assert len(text[0].split(",")) == table.num_columns
+
+
+@pytest.mark.parametrize(
+    ("rows", "links", "complete"),
+    [
+        ('20,1e-300,nan,"two\nlines, 7"\n24,-0.0,-inf,\n', "int64", True),
+        ("7,0.1,inf,3\n16B-1,2.0,NaN,\n# incomplete: interrupted\n", "string", False),
+    ],
+)
+def test_a_stream_has_every_digit_and_its_end_mark_when_it_is_complete(rows, links, complete):
+    arrow = pytest.importorskip("pyarrow")
+    pytest.importorskip("pyarrow.csv")
+    from chaindrive.arrow_stream import _convert
+
+    out = io.BytesIO()
+    text = f'links,"force[a, b [1]] [N]",share [1],error\n{rows}'
+    _convert(arrow, io.BufferedReader(io.BytesIO(text.encode())), out)
+    assert out.getvalue().endswith(b"\xff\xff\xff\xff\0\0\0\0") is complete
+    table = arrow.ipc.open_stream(io.BytesIO(out.getvalue())).read_all()
+    assert table.column_names == ["links", "force[a, b [1]]", "share", "error"]
+    assert str(table.schema.field("links").type) == links
+    read = list(csv.reader(io.StringIO(rows.partition("#")[0])))
+    assert [str(it) for it in table["links"].to_pylist()] == [row[0] for row in read]
+    for column, name in enumerate(table.column_names[1:3], 1):
+        numbers = np.array([float(row[column]) for row in read])
+        np.testing.assert_array_equal(table[name].to_numpy(), numbers)
+    if "two" in rows:
+        assert table["error"].to_pylist() == ["two\nlines, 7", ""]
+
+
+def test_a_stream_asks_for_its_extra():
+    script = (
+        "import sys; sys.modules['pyarrow'] = None\n"
+        "from chaindrive.__main__ import main; sys.exit(main())"
+    )
+    whole = [sys.executable, "-c", script, *TABLE, "-o", "-", "--format=arrow"]
+    done = subprocess.run(whole, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "take the package pyarrow: pip install 'chaindrive[parquet]'" in done.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_a_stream_that_is_stopped_or_not_read_says_so():
+    ipc = pytest.importorskip("pyarrow.ipc")
+    run = ["run", "spinning_ring", "--until", "1e5 s", *TABLE[4:], "-o", "-", "--format", "arrow"]
+    whole = [sys.executable, "-m", "chaindrive", *run]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    with subprocess.Popen(whole, **pipes) as run:
+        batches = ipc.open_stream(run.stdout)
+        assert batches.read_next_batch().num_rows > 0
+        run.send_signal(signal.SIGTERM)
+        assert sum(batch.num_rows for batch in batches) > 0
+        assert run.wait(60) == 130
+    with subprocess.Popen(whole, **pipes) as run:
+        assert ipc.open_stream(run.stdout).read_next_batch().num_rows > 0
+        run.stdout.close()
+        assert run.wait(60) == 3
+        assert b"stdout" in run.stderr.read()
 
 
 def test_nothing_is_coloured(monkeypatch):

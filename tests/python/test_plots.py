@@ -273,8 +273,6 @@ def test_one_scheme_everywhere() -> None:
     }.items():
         # Once: both themes have it.
         assert re.findall(rf"--{variable}: (#[0-9a-f]+);", style) == [colour], variable
-    diagram = ROOT / "crates/cli/src/commands/bench/diagram.rs"
-    assert set(re.findall(r"#[0-9a-f]{6}\b", diagram.read_text("utf-8"))) <= known
 
 
 def test_the_style_of_the_pages_is_that_of_plots() -> None:

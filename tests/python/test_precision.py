@@ -1,5 +1,8 @@
 """Work-precision studies: orders of the methods, failures, the diagram."""
 
+import subprocess
+import sys
+
 import matplotlib
 
 matplotlib.use("Agg")
@@ -48,6 +51,20 @@ def test_the_diagram_has_a_line_a_method(table):
     labels = [text.get_text() for text in axes.get_legend().get_texts()]
     assert labels[:2] == ["verlet", "rk4"]
     assert axes.get_xscale() == axes.get_yscale() == "log"
+
+
+def test_the_command_draws_the_diagram_of_its_table(tmp_path):
+    short = ["--until", "5 ms", "--methods", "verlet,rk4", "--repeats", "1", "-o", "bench"]
+    whole = [sys.executable, "-m", "chaindrive", "bench", "spinning_ring", *short]
+    done = subprocess.run(whole, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert done.returncode == 0, done.stderr
+    drawn = (tmp_path / "bench.svg").read_text("utf-8")
+    for words in ("verlet", "rk4", "wall time [s]", "reference and check apart"):
+        assert f"<!-- {words} -->" in drawn
+    (tmp_path / "bench.csv").unlink()
+    done = subprocess.run(whole, capture_output=True, text=True, cwd=tmp_path, check=False)
+    assert (done.returncode, done.stdout) == (3, "")
+    assert "bench.svg: there is already a file here" in done.stderr
 
 
 def test_a_run_in_is_carried_out_before():

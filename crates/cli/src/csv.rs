@@ -68,9 +68,7 @@ impl CsvWriter {
     pub(crate) fn push(&mut self, simulation: &Simulation) -> Result<(), Failure> {
         self.row.clear();
         self.row.push(simulation.observation());
-        let columns = self.row.columns.iter().flat_map(|column| &column.values);
-        let row = self.row.time.iter().chain(columns).copied().map(digits);
-        self.samples.push(row)?;
+        self.samples.push(cells(&self.row))?;
         self.push_contacts(simulation.events())
     }
 
@@ -116,6 +114,12 @@ impl CsvWriter {
 /// The shortest digits that read back to the same number.
 pub(crate) fn digits(value: f64) -> String {
     format!("{value:?}")
+}
+
+/// The cells of one sample.
+pub(crate) fn cells(sample: &Recording) -> impl Iterator<Item = String> {
+    let columns = sample.columns.iter().flat_map(|column| &column.values);
+    sample.time.iter().chain(columns).copied().map(digits)
 }
 
 /// Last line of a table that is not at its end.
@@ -266,31 +270,22 @@ impl Drop for Table {
     }
 }
 
-/// Names and units of the columns of a run.
-pub(crate) fn columns(
-    simulation: &Simulation,
-    channels: &[Channel],
-) -> Vec<(String, &'static str)> {
-    let mut columns = vec![(TIME.to_owned(), "s")];
+/// The headings of a run.
+pub(crate) fn heading(simulation: &Simulation, channels: &[Channel]) -> Vec<String> {
+    let mut headings = vec![named(TIME, Some("s"))];
     for channel in channels {
         let name = channel.name();
         let units = channel.units(simulation.system());
         match labels(channel.axis(), simulation.system()) {
-            None => columns.extend(units.into_iter().map(|unit| (name.to_owned(), unit))),
+            None => headings.extend(units.into_iter().map(|unit| named(name, Some(unit)))),
             Some(labels) => {
                 let entries = labels.iter().zip(units);
-                columns.extend(entries.map(|(label, unit)| (format!("{name}[{label}]"), unit)));
+                let heading = |(label, unit)| named(&format!("{name}[{label}]"), Some(unit));
+                headings.extend(entries.map(heading));
             }
         }
     }
-    columns
-}
-
-fn heading(simulation: &Simulation, channels: &[Channel]) -> Vec<String> {
-    let columns = columns(simulation, channels).into_iter();
-    columns
-        .map(|(name, unit)| named(&name, Some(unit)))
-        .collect()
+    headings
 }
 
 /// The heading of a column.

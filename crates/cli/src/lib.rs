@@ -90,10 +90,10 @@ enum Verb {
     Man(shell::Man),
 }
 
-/// A movie or report: the Python package draws it.
+/// A movie, report or diagram: the Python package draws it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawn {
-    /// Result, or, for a report, also a scene file or the name of an embedded scene.
+    /// Result, or, for a report, also a scene file or the name of an embedded scene; for a diagram, the table that [`run`] writes.
     pub source: PathBuf,
     /// The file to make.
     pub output: PathBuf,
@@ -105,7 +105,7 @@ pub struct Drawn {
     pub quiet: bool,
 }
 
-/// The movie or report that a command line asks of the Python package; none if it asks for anything else, or is wrong: [`run`] tells then.
+/// The movie, report or diagram that a command line asks of the Python package; none if it asks for anything else, or is wrong: [`run`] tells then.
 pub fn drawn<A>(arguments: impl IntoIterator<Item = A>) -> Option<Drawn>
 where
     A: Into<OsString> + Clone,
@@ -113,6 +113,7 @@ where
     match Command::try_parse_from(arguments).ok()?.verb? {
         Verb::Replay(arguments) => arguments.movie(),
         Verb::Report(arguments) => Some(arguments.report()),
+        Verb::Bench(arguments) => Some(arguments.diagram()),
         _ => None,
     }
 }

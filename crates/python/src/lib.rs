@@ -95,7 +95,7 @@ mod core {
         module.add("_origin", origin.into_py_dict(module.py())?)
     }
 
-    /// Source, output, number of pictures, whether to overwrite and to be quiet, of the movie or report that a command line asks for.
+    /// Source, output, number of pictures, whether to overwrite and to be quiet, of the movie, report or diagram that a command line asks for.
     #[pyfunction]
     fn _drawn(arguments: Vec<OsString>) -> Option<(OsString, OsString, Option<usize>, bool, bool)> {
         let it = chaindrive_cli::drawn(arguments)?;

@@ -1,8 +1,8 @@
 """Analysis of runs: spectra and modes, contacts and losses, wear and fatigue.
 
 Every function takes a run, the `xarray.Dataset` of `chaindrive.simulate`, and returns labelled
-arrays in SI units. The same functions are methods of ``run.drive``, see `accessor`. SciPy does the
-mathematics: the extra ``analysis``.
+arrays in SI units. The same functions are methods of ``run.drive``, see `DriveAccessor`. SciPy
+does the mathematics: the extra ``analysis``.
 
     >>> import chaindrive as cd
     >>> run = cd.simulate(cd.scenes.spinning_ring(), until=0.02, record=["link_tension"])

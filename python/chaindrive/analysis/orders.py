@@ -18,10 +18,6 @@ from chaindrive.pose import at_start, drive_of
 __all__ = ["campbell", "mesh_orders", "order_map", "order_slice", "order_spectrum"]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
 def order_map(
     run: xr.Dataset,
     channel: str | xr.DataArray,

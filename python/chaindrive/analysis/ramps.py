@@ -18,10 +18,6 @@ from chaindrive.simulation import simulate
 __all__ = ["prescribed", "run_up", "with_run_up"]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
 # Knots of a table in the shortest period of an order: the spline is then 0.2 % short in
 # acceleration, (2π / 40)² / 12.
 _KNOTS = 40

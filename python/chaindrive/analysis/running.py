@@ -19,10 +19,6 @@ from chaindrive.pose import drive_of
 __all__ = ["critical_speeds", "moving_string", "running_modes", "span_frequencies"]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
 def moving_string(
     tension: ArrayLike, mass_per_length: float, length: ArrayLike, speed: ArrayLike, mode: int = 1
 ) -> NDArray[np.float64]:

@@ -15,10 +15,6 @@ from chaindrive.extras import extra
 __all__ = ["RunningChain", "RunningState", "samples_near"]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
 # Modes at rest up to this many times the highest frequency asked for carry the running ones.
 _BASIS = 4.0
 # Samples within this share of a speed count for the tension at that speed.

@@ -13,10 +13,6 @@ from chaindrive.errors import ParameterError
 __all__ = ["label", "recorded", "require", "sample_rate", "signal", "turning"]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
 _NAMED = ("chain", "span", "sprocket", "shaft", "guide", "tensioner", "link", "roller", "joint")
 
 

@@ -18,10 +18,6 @@ from chaindrive.pose import at_start, drive_of
 __all__ = ["Stations", "span_envelope", "span_lines", "span_motion", "stations"]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
 # A guide of a larger radius counts as straight [pitches]: the chain leaves it where it ends.
 _STRAIGHT = 1000.0
 # Least force that pushes a roller, in fractions of the largest tension.

@@ -15,10 +15,6 @@ from chaindrive.extras import extra
 __all__ = ["peaks", "spectrum"]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
 def spectrum(
     run: xr.Dataset,
     channel: str | xr.DataArray,

@@ -13,10 +13,6 @@ from chaindrive.pose import at_start, drive_of
 __all__ = ["speed_ripple", "transmission_error"]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
 def transmission_error(
     run: xr.Dataset, driver: str, driven: str, *, after: float = 0.0
 ) -> xr.Dataset:

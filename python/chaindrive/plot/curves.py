@@ -9,6 +9,7 @@ import numpy as np
 from chaindrive.analysis.signal import require
 from chaindrive.errors import ParameterError
 from chaindrive.plot.axes import drawing, legend_below
+from chaindrive.plot.docstrings import completed
 from chaindrive.plot.scheme import LIMIT
 from chaindrive.plot.units import in_trade, written
 
@@ -19,10 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["tension", "work_precision"]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
+@completed()
 def tension(run: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     """Draw span tensions over time, or link tensions where there are no spans.
 
@@ -30,12 +28,6 @@ def tension(run: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     ----------
     run
         A run with the channel ``span_tension`` or ``link_tension``.
-    ax
-        Where to draw; new axes when absent.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -70,6 +62,7 @@ def tension(run: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     return ax
 
 
+@completed()
 def work_precision(table: xr.Dataset, *, ax: Axes | None = None, cost: str = "wall") -> Axes:
     """Draw error against cost, both logarithmic, one line a method and onset depth.
 
@@ -77,14 +70,8 @@ def work_precision(table: xr.Dataset, *, ax: Axes | None = None, cost: str = "wa
     ----------
     table
         What `chaindrive.work_precision` returned.
-    ax
-        Where to draw; new axes when absent.
     cost
         Column for the abscissa: ``"wall"``, ``"cpu"`` or ``"evaluations"``.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------

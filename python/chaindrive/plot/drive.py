@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from chaindrive.drive import Drive
 from chaindrive.plot.axes import colour_bar, drawing
+from chaindrive.plot.docstrings import completed
 from chaindrive.plot.scheme import CARRIER, GUIDE, MARK, OUTLINE, PLATES, STEEL
 from chaindrive.plot.units import in_trade, written
 from chaindrive.pose import Pose, drive_of, figure_of, recorded_at
@@ -34,10 +35,7 @@ _WIDTH = 0.6
 __all__ = ["frame", "layout", "svg"]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
+@completed()
 def layout(
     drive: Drive | xr.Dataset,
     *,
@@ -55,17 +53,11 @@ def layout(
     ----------
     drive
         What to draw: a drive, or a run for its drive.
-    ax
-        Where to draw; new axes when absent.
     names
         Whether to write the names of sprockets and guides.
     settled
         Whether the chain hangs and stretches as in static equilibrium, or lies as it was laid
         (which also shows drives that do not settle).
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Notes
     -----
@@ -86,6 +78,7 @@ def layout(
     return ax
 
 
+@completed()
 def frame(
     run: xr.Dataset, time: float, *, ax: Axes | None = None, drive: Drive | None = None
 ) -> Axes:
@@ -99,14 +92,8 @@ def frame(
         centres stand on springs; with ``link_tension`` for colour.
     time
         When [s]; the nearest sample is taken.
-    ax
-        Where to draw; new axes when absent.
     drive
         What was run; read from the attribute ``scene`` of the run when absent.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------

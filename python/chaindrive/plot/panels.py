@@ -26,10 +26,6 @@ if TYPE_CHECKING:
 __all__ = ["orders", "overview"]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
 def overview(run: xr.Dataset) -> Figure:
     """Draw a run in six panels.
 

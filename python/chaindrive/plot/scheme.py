@@ -25,10 +25,6 @@ __all__ = [
 ]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
 INK = "#767e87"
 """Text and axes."""
 STEEL = "#8d99a6"

@@ -33,10 +33,6 @@ __all__ = [
 Analysis = TypeVar("Analysis", xr.Dataset, xr.DataArray)
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
 def is_run(source: object) -> bool:
     """Return whether this is a run, as `simulate` and `open_result` return it."""
     return isinstance(source, xr.Dataset) and "scene" in source.attrs and "time" in source.dims

@@ -10,6 +10,7 @@ import xarray as xr
 from chaindrive import analysis
 from chaindrive.errors import ParameterError
 from chaindrive.plot.axes import colour_bar, drawing, legend_below
+from chaindrive.plot.docstrings import completed
 from chaindrive.plot.scheme import CURVES, LIMIT, STEEL
 from chaindrive.plot.source import (
     analysed,
@@ -43,10 +44,7 @@ _RPM = 60.0 / (2.0 * np.pi)
 _FLOOR_DB = -60.0
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
+@completed()
 def spectrum(
     source: xr.Dataset | xr.DataArray,
     channel: str | xr.DataArray | None = None,
@@ -63,16 +61,10 @@ def spectrum(
         A run, or what `chaindrive.analysis.spectrum` or `order_spectrum` returned.
     channel
         Of a run, the channel or a signal over time; ``"span_tension"`` when absent.
-    ax
-        Where to draw; new axes when absent.
     up_to
         Highest frequency [Hz] or order; all when absent.
     **options
         Of a run, passed on to `chaindrive.analysis.spectrum`.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -101,6 +93,7 @@ def spectrum(
     return ax
 
 
+@completed(run="A run in which the speed changes")
 def order_map(
     source: xr.Dataset | xr.DataArray,
     channel: str | xr.DataArray | None = None,
@@ -114,22 +107,12 @@ def order_map(
 
     Parameters
     ----------
-    source
-        A run in which the speed changes, or what `chaindrive.analysis.order_map` returned.
     channel
         Of a run, the channel or a signal over time; the tension of the tightest span when absent.
     shaft
         Of a run, the sprocket or shaft whose turns count; the driver when absent.
-    ax
-        Where to draw; new axes when absent.
     up_to
         Highest order; when absent two and a half times the mesh order for a run, else all.
-    **options
-        Of a run, passed on to that function.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -149,6 +132,7 @@ def order_map(
     return ax
 
 
+@completed()
 def order_slice(
     source: xr.Dataset, order: float | None = None, *, ax: Axes | None = None, **look: Any
 ) -> Axes:
@@ -161,14 +145,8 @@ def order_slice(
         orders of the driver; or what `chaindrive.analysis.order_slice` returned.
     order
         Of a run, the order; that of the driver's teeth when absent.
-    ax
-        Where to draw; new axes when absent.
     **look
         Passed on to `matplotlib.axes.Axes.plot`.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -198,6 +176,7 @@ def order_slice(
     return ax
 
 
+@completed(run="A run in which the speed changes")
 def campbell(
     source: xr.Dataset,
     channel: str | xr.DataArray | None = None,
@@ -210,20 +189,10 @@ def campbell(
 
     Parameters
     ----------
-    source
-        A run in which the speed changes, or what `chaindrive.analysis.campbell` returned.
     channel
         Of a run, the channel or a signal over time; the tension of the tightest span when absent.
     shaft
         Of a run, the sprocket or shaft whose speed is the abscissa; the driver when absent.
-    ax
-        Where to draw; new axes when absent.
-    **options
-        Of a run, passed on to that function.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -266,6 +235,7 @@ def campbell(
     return ax
 
 
+@completed()
 def running_modes(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
     """Draw the frequencies of the running drive against speed, coloured by where they live.
 
@@ -273,19 +243,6 @@ def running_modes(source: xr.Dataset, *, ax: Axes | None = None, **options: Any)
     ----------
     source
         A run, or what `chaindrive.analysis.running_modes` returned, best of several speeds.
-    ax
-        Where to draw; new axes when absent.
-    **options
-        Of a run, passed on to that function.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ParameterError
-        The analysis refuses the run: the message names the channel to record, or what is absent.
     """
     modes = analysed(source, analysis.running_modes, "growth", options, {"shaft": driver_of})
     with drawing(ax) as ax:
@@ -305,6 +262,7 @@ def running_modes(source: xr.Dataset, *, ax: Axes | None = None, **options: Any)
     return ax
 
 
+@completed()
 def transmission_error(
     source: xr.Dataset,
     driver: str | None = None,
@@ -317,24 +275,9 @@ def transmission_error(
 
     Parameters
     ----------
-    source
-        A run, or what `chaindrive.analysis.transmission_error` returned.
     driver, driven
         Of a run, sprockets of one chain; the first whose motion is given and the first under a
         load when absent.
-    ax
-        Where to draw; new axes when absent.
-    **options
-        Of a run, passed on to that function.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ParameterError
-        The analysis refuses the run: the message names the channel to record, or what is absent.
     """
     chosen = {"driver": driver, "driven": driven, **options}
     usual = {"driver": driver_of, "driven": lambda run: driven_of(run, driver)}
@@ -354,21 +297,9 @@ def transmission_error(
     return ax
 
 
+@completed()
 def speed_ripple(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
     """Draw the irregularity and the ripple of every sprocket's speed.
-
-    Parameters
-    ----------
-    source
-        A run, or what `chaindrive.analysis.speed_ripple` returned.
-    ax
-        Where to draw; new axes when absent.
-    **options
-        Of a run, passed on to that function.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -391,6 +322,7 @@ def speed_ripple(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) 
     return ax
 
 
+@completed()
 def span_motion(
     source: xr.Dataset | xr.DataArray,
     span: str | None = None,
@@ -402,23 +334,8 @@ def span_motion(
 
     Parameters
     ----------
-    source
-        A run, or what `chaindrive.analysis.span_motion` returned.
     span
         Of a run, the span; the longest when absent.
-    ax
-        Where to draw; new axes when absent.
-    **options
-        Of a run, passed on to that function.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ParameterError
-        The analysis refuses the run: the message names the channel to record, or what is absent.
     """
     chosen = {"span": span, **options}
     motion = analysed(source, analysis.span_motion, "place", chosen, {"span": span_of})
@@ -434,6 +351,7 @@ def span_motion(
     return ax
 
 
+@completed()
 def span_envelope(
     source: xr.Dataset, span: str | None = None, *, ax: Axes | None = None, **options: Any
 ) -> Axes:
@@ -441,23 +359,8 @@ def span_envelope(
 
     Parameters
     ----------
-    source
-        A run, or what `chaindrive.analysis.span_envelope` returned.
     span
         Of a run, the span; the longest when absent.
-    ax
-        Where to draw; new axes when absent.
-    **options
-        Of a run, passed on to that function.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ParameterError
-        The analysis refuses the run: the message names the channel to record, or what is absent.
     """
     chosen = {"span": span, **options}
     envelope = analysed(source, analysis.span_envelope, "distance", chosen, {"span": span_of})

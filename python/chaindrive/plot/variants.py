@@ -8,6 +8,7 @@ import numpy as np
 
 from chaindrive.errors import ParameterError
 from chaindrive.plot.axes import colour_bar, drawing, legend_below
+from chaindrive.plot.docstrings import completed
 from chaindrive.plot.scheme import CURVES, MARK
 from chaindrive.plot.units import in_trade, written
 
@@ -18,10 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["response"]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
+@completed()
 def response(
     sweep: xr.Dataset,
     quantity: str = "span_tension_max",
@@ -43,15 +41,9 @@ def response(
         A statistic of it.
     optimum
         Whether the least or the largest value is marked.
-    ax
-        Where to draw; new axes when absent.
     **at
         Labels by dimension: ``span="crank-cam"`` where the statistic has one a span, or one of
         more than two values varied. Of labels that nobody chooses the largest value is drawn.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------

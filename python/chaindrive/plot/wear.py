@@ -9,6 +9,7 @@ import numpy as np
 from chaindrive import analysis
 from chaindrive.errors import ParameterError
 from chaindrive.plot.axes import colour_bar, drawing, legend_below
+from chaindrive.plot.docstrings import completed
 from chaindrive.plot.scheme import CURVES, LIMIT, MARK, STEEL
 from chaindrive.plot.source import analysed, chain_of, driver_of
 from chaindrive.plot.units import in_trade, rounded, scientific, written
@@ -31,31 +32,9 @@ __all__ = [
 _BLUE, _ORANGE = CURVES[:2]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
+@completed(chain=True)
 def tension_around_loop(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
-    """Draw the tension of links around the loop, with the sprockets shaded.
-
-    Parameters
-    ----------
-    source
-        A run, or what `chaindrive.analysis.tension_around_loop` returned.
-    ax
-        Where to draw; new axes when absent.
-    **options
-        Of a run, passed on to that function; the first chain is drawn unless ``chain`` names one.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ParameterError
-        The analysis refuses the run: the message names the channel to record, or what is absent.
-    """
+    """Draw the tension of links around the loop, with the sprockets shaded."""
     usual = {"chain": chain_of}
     loop = analysed(source, analysis.tension_around_loop, "tension_mean", options, usual)
     with drawing(ax) as ax:
@@ -95,6 +74,7 @@ def tension_around_loop(source: xr.Dataset, *, ax: Axes | None = None, **options
     return ax
 
 
+@completed()
 def tooth_load(
     source: xr.Dataset, sprocket: str | None = None, *, ax: Axes | None = None, **options: Any
 ) -> Axes:
@@ -102,23 +82,8 @@ def tooth_load(
 
     Parameters
     ----------
-    source
-        A run, or what `chaindrive.analysis.tooth_load` returned.
     sprocket
         Of a run, the sprocket; the driver when absent.
-    ax
-        Where to draw; new axes when absent.
-    **options
-        Of a run, passed on to that function.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ParameterError
-        The analysis refuses the run: the message names the channel to record, or what is absent.
     """
     chosen = {"sprocket": sprocket, **options}
     usual = {"sprocket": driver_of}
@@ -157,27 +122,9 @@ def tooth_load(
     return ax
 
 
+@completed(run='A run with ``events="teeth"``')
 def impacts(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
-    """Draw how fast rollers are seated: the share of engagements below a speed, by sprocket.
-
-    Parameters
-    ----------
-    source
-        A run with ``events="teeth"``, or what `chaindrive.analysis.impacts` returned.
-    ax
-        Where to draw; new axes when absent.
-    **options
-        Of a run, passed on to that function.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ParameterError
-        The analysis refuses the run: the message names what to record, or what is absent.
-    """
+    """Draw how fast rollers are seated: the share of engagements below a speed, by sprocket."""
     found = analysed(source, analysis.impacts, "speed_theoretical", options)
     with drawing(ax) as ax:
         of = found["sprocket_of"].to_numpy()
@@ -198,21 +145,9 @@ def impacts(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Ax
     return ax
 
 
+@completed()
 def losses(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
     """Draw the mean power that is lost at every place.
-
-    Parameters
-    ----------
-    source
-        A run, or what `chaindrive.analysis.losses` returned.
-    ax
-        Where to draw; new axes when absent.
-    **options
-        Of a run, passed on to that function.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
 
     Raises
     ------
@@ -241,27 +176,14 @@ def losses(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axe
     return ax
 
 
+@completed(chain=True)
 def joint_work(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
     """Draw bearing pressure and p·v of the joints.
-
-    Parameters
-    ----------
-    source
-        A run, or what `chaindrive.analysis.joint_work` returned.
-    ax
-        Where to draw; new axes when absent.
-    **options
-        Of a run, passed on to that function; the first chain is drawn unless ``chain`` names one.
 
     Returns
     -------
     matplotlib.axes.Axes
         Those of the pressure; p·v stands on the right.
-
-    Raises
-    ------
-    ParameterError
-        The analysis refuses the run: the message names the channel to record, or what is absent.
     """
     usual = {"chain": chain_of}
     work = analysed(source, analysis.joint_work, "pressure_velocity", options, usual)
@@ -284,27 +206,9 @@ def joint_work(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) ->
     return ax
 
 
+@completed(of="wear", chain=True)
 def elongation(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
-    """Draw the elongation of a worn chain over hours.
-
-    Parameters
-    ----------
-    source
-        A run, or what `chaindrive.analysis.wear` returned.
-    ax
-        Where to draw; new axes when absent.
-    **options
-        Of a run, passed on to that function; the first chain is drawn unless ``chain`` names one.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ParameterError
-        The analysis refuses the run: the message names the channel to record, or what is absent.
-    """
+    """Draw the elongation of a worn chain over hours."""
     found = analysed(source, analysis.wear, "elongation", options, {"chain": chain_of})
     with drawing(ax) as ax:
         ax.plot(found["hours"], 100 * found["elongation"], color=_BLUE)
@@ -331,27 +235,9 @@ def elongation(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) ->
     return ax
 
 
+@completed(chain=True)
 def rainflow(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
-    """Draw the load cycles of a link: their number by range and mean.
-
-    Parameters
-    ----------
-    source
-        A run, or what `chaindrive.analysis.rainflow` returned.
-    ax
-        Where to draw; new axes when absent.
-    **options
-        Of a run, passed on to that function; the first chain is drawn unless ``chain`` names one.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ParameterError
-        The analysis refuses the run: the message names the channel to record.
-    """
+    """Draw the load cycles of a link: their number by range and mean."""
     from matplotlib.colors import LogNorm
 
     found = analysed(source, analysis.rainflow, "cycles", options, {"chain": chain_of})
@@ -376,27 +262,9 @@ def rainflow(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> A
     return ax
 
 
+@completed(chain=True)
 def utilisation(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
-    """Draw loads over limits; beyond the line at 100 % is too much.
-
-    Parameters
-    ----------
-    source
-        A run, or what `chaindrive.analysis.utilisation` returned.
-    ax
-        Where to draw; new axes when absent.
-    **options
-        Of a run, passed on to that function; the first chain is drawn unless ``chain`` names one.
-
-    Returns
-    -------
-    matplotlib.axes.Axes
-
-    Raises
-    ------
-    ParameterError
-        The analysis refuses the run: the message names the channel to record, or what is absent.
-    """
+    """Draw loads over limits; beyond the line at 100 % is too much."""
     usual = {"chain": chain_of}
     found = analysed(source, analysis.utilisation, "utilisation", options, usual)
     with drawing(ax) as ax:

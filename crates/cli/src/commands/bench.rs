@@ -1,21 +1,20 @@
 //! `chaindrive bench`: what do methods and steps cost, and how exact are they?
 
-mod diagram;
-
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use chaindrive::precision::{Study, Table, Variant, work_precision};
+use chaindrive::precision::{Study, Variant, work_precision};
 use chaindrive::scene::RunDefaults;
 use chaindrive::{Request, Scene, Stepping, assemble};
 use clap::Args;
 
+use crate::Drawn;
 use crate::failure::Failure;
 use crate::progress::waiting;
 use crate::request::{RunArguments, SceneArguments, any, some};
 use crate::terminal::print;
 
-/// Measures work and precision of methods and steps on a scene; prints a table, saves it and a diagram.
+/// Measures work and precision of methods and steps on a scene; prints a table and saves it.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -49,13 +48,27 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = Study::default().replicates, value_parser = any::<usize>)]
     replicates: usize,
 
-    /// Name of the files, to which .csv and .svg are added; absent: work-precision
+    /// Name of the table, to which .csv is added; absent: work-precision. The command of the Python package adds a
+    /// diagram (.svg)
     #[arg(short, long, value_name = "NAME", default_value = "work-precision")]
     output: PathBuf,
 
-    /// Replaces earlier files of these names
+    /// Replaces earlier files of this name
     #[arg(long)]
     overwrite: bool,
+}
+
+impl Arguments {
+    /// The diagram that the Python package draws of the table.
+    pub(crate) fn diagram(self) -> Drawn {
+        Drawn {
+            source: named(&self.output, "csv"),
+            output: named(&self.output, "svg"),
+            frames: None,
+            overwrite: self.overwrite,
+            quiet: false,
+        }
+    }
 }
 
 pub(crate) fn bench(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
@@ -70,32 +83,36 @@ pub(crate) fn bench(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
         repeats: arguments.repeats,
         replicates: arguments.replicates,
     };
-    let files = ["csv", "svg"].map(|extension| named(&arguments.output, extension));
-    free(&files, arguments.overwrite)?;
+    let file = named(&arguments.output, "csv");
+    free(&file, arguments.overwrite)?;
     let table = waiting("comparing methods", interrupted, |stop| {
         work_precision(&start, &run, &study, stop)
     });
     let table = Failure::or_interrupted(table, scene.name())?;
     print(&table)?;
-    save(&table, &files, &scene_title(scene.name(), scene.title()))
+    let failed = |source| Failure::File {
+        path: file.display().to_string(),
+        source,
+    };
+    let written = table.write_csv(File::create(&file).map_err(failed)?);
+    written.map_err(|error| failed(error.into()))
 }
 
-/// Finds out before minutes of work whether the files can be written.
-fn free(files: &[PathBuf; 2], overwrite: bool) -> Result<(), Failure> {
-    let taken = files.iter().find(|path| path.exists());
-    if let Some(path) = taken.filter(|_| !overwrite) {
+/// Finds out before minutes of work whether a file can be written.
+fn free(file: &Path, overwrite: bool) -> Result<(), Failure> {
+    if file.exists() && !overwrite {
         return Err(Failure::Taken {
-            path: path.display().to_string(),
+            path: file.display().to_string(),
             found: "there is already a file here",
             hint: ", or pass --overwrite",
         });
     }
-    let folder = files[0]
+    let folder = file
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());
     match folder.map(std::fs::metadata) {
         Some(Err(source)) => Err(Failure::File {
-            path: files[0].display().to_string(),
+            path: file.display().to_string(),
             source,
         }),
         _ => Ok(()),
@@ -118,10 +135,6 @@ fn read(
         Failure::Argument(format!("{option}: {}", said.collect::<Vec<_>>().join("; ")))
     })?;
     Ok(of(&changed.run_defaults()))
-}
-
-fn scene_title(name: &str, title: &str) -> String {
-    if title.is_empty() { name } else { title }.to_owned()
 }
 
 fn named(base: &Path, extension: &str) -> PathBuf {
@@ -207,15 +220,4 @@ fn variants(arguments: &Arguments, scene: &Scene) -> Result<Vec<Variant>, Failur
         list.extend(values.iter().map(|value| of(*value)));
     }
     Ok(list)
-}
-
-fn save(table: &Table, [csv, svg]: &[PathBuf; 2], title: &str) -> Result<(), Failure> {
-    let failed = |path: &Path, source| Failure::File {
-        path: path.display().to_string(),
-        source,
-    };
-    let file = File::create(csv).map_err(|source| failed(csv, source))?;
-    let written = table.write_csv(file);
-    written.map_err(|error| failed(csv, error.into()))?;
-    diagram::draw(table, title, svg).map_err(|error| failed(svg, error))
 }

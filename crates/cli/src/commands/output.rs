@@ -4,13 +4,22 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use chaindrive::record::{Existing, InStore, Provenance, take_over};
-use chaindrive::{Channel, Checkpoint, End, EventKinds, Recording, Simulation, Sink};
-use clap::Args;
+use chaindrive::{Channel, Checkpoint, End, EventKinds, Simulation, Sink};
+use clap::{Args, ValueEnum};
 
 use crate::csv::CsvWriter;
 use crate::failure::Failure;
-use crate::stream::{Format, Stream};
+use crate::stream::Stream;
 use crate::terminal::{print, say};
+
+/// Formats of a table on standard output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// Comma separated values, with the units in the headings
+    Csv,
+    /// Arrow IPC stream, with the units in the metadata of the columns, by the command of the Python package
+    Arrow,
+}
 
 /// Where a result is wanted.
 #[derive(Debug, Args)]
@@ -54,16 +63,19 @@ pub(crate) enum Target {
     Zarr(PathBuf),
     Csv(PathBuf),
     /// Standard output.
-    Stream(Format),
+    Stream,
 }
 
 impl Target {
     /// The extension decides; on standard output, the format that is asked for.
     pub(crate) fn of(place: &Place) -> Result<Self, Failure> {
         let path = match (place.output.as_deref(), place.format) {
-            (Some(path), format) if path == Path::new("-") => {
-                return Ok(Self::Stream(format.unwrap_or_default()));
+            (Some(path), Some(Format::Arrow)) if path == Path::new("-") => {
+                let message = "--format arrow: the command of the Python package writes Arrow streams, \
+                               with pip install 'chaindrive[parquet]'; leave --format out for CSV";
+                return Err(Failure::Argument(message.to_owned()));
             }
+            (Some(path), _) if path == Path::new("-") => return Ok(Self::Stream),
             (_, Some(_)) => {
                 let message =
                     "--format: the name of a file tells its format; give --format with -o - only";
@@ -84,7 +96,7 @@ impl Target {
 
     pub(crate) fn page(&self) -> Page {
         match self {
-            Self::Stream(_) => Page::Aside,
+            Self::Stream => Page::Aside,
             _ => Page::Out,
         }
     }
@@ -95,7 +107,7 @@ impl Target {
             Self::Zarr(_) => return Ok(()),
             Self::Nowhere => "nothing is written".to_owned(),
             Self::Csv(path) => format!("{}: a table cannot be carried on", path.display()),
-            Self::Stream(_) => "standard output cannot be carried on".to_owned(),
+            Self::Stream => "standard output cannot be carried on".to_owned(),
         };
         Err(Failure::Argument(format!(
             "--checkpoint-every: {found}; give a Zarr store, such as -o run.zarr"
@@ -108,7 +120,7 @@ impl Target {
             Self::Nowhere => Output::Nowhere,
             Self::Zarr(path) => Output::Zarr(Box::new(InStore::new(path, existing))),
             Self::Csv(path) => Output::NewCsv(path, existing),
-            Self::Stream(format) => Output::NewStream(format),
+            Self::Stream => Output::NewStream,
         }
     }
 }
@@ -147,9 +159,8 @@ pub(crate) enum Output {
     NewCsv(PathBuf, Existing),
     Csv(Box<CsvWriter>),
     /// A table on standard output that is begun when the run is.
-    NewStream(Format),
-    /// The table, and its last sample.
-    Stream(Box<Stream>, Box<Recording>),
+    NewStream,
+    Stream(Box<Stream>),
 }
 
 impl Sink for Output {
@@ -162,22 +173,21 @@ impl Sink for Output {
         provenance: &Provenance,
     ) -> Result<(), Failure> {
         match self {
-            Self::Nowhere | Self::Csv(_) | Self::Stream(..) => {}
+            Self::Nowhere | Self::Csv(_) | Self::Stream(_) => {}
             Self::Zarr(store) => store.begin(simulation, channels, provenance)?,
             Self::NewCsv(path, existing) => {
                 let events = provenance.run.events;
                 let writer = CsvWriter::create(path, simulation, channels, events, *existing)?;
                 *self = Self::Csv(Box::new(writer));
             }
-            Self::NewStream(format) => {
+            Self::NewStream => {
                 if provenance.run.events != EventKinds::default() {
                     let message =
                         "--events: standard output takes one table; give -o run.csv or -o run.zarr";
                     return Err(Failure::Argument(message.to_owned()));
                 }
-                let stream = Stream::of_samples(*format, simulation, channels)?;
-                let row = Recording::new(channels, simulation.system());
-                *self = Self::Stream(Box::new(stream), Box::new(row));
+                let stream = Stream::begin(simulation, channels)?;
+                *self = Self::Stream(Box::new(stream));
             }
         }
         Ok(())
@@ -189,14 +199,10 @@ impl Sink for Output {
 
     fn push(&mut self, simulation: &Simulation) -> Result<(), Failure> {
         match self {
-            Self::Nowhere | Self::NewCsv(..) | Self::NewStream(_) => Ok(()),
+            Self::Nowhere | Self::NewCsv(..) | Self::NewStream => Ok(()),
             Self::Zarr(store) => Ok(store.push(simulation)?),
             Self::Csv(writer) => writer.push(simulation),
-            Self::Stream(stream, row) => {
-                row.clear();
-                row.push(simulation.observation());
-                stream.push(row)
-            }
+            Self::Stream(stream) => stream.push(simulation),
         }
     }
 
@@ -210,10 +216,30 @@ impl Sink for Output {
     /// A table of numbers has no place for what the result says about itself.
     fn end(&mut self, end: &End<'_>) -> Result<(), Failure> {
         match std::mem::replace(self, Self::Nowhere) {
-            Self::Nowhere | Self::NewCsv(..) | Self::NewStream(_) => Ok(()),
+            Self::Nowhere | Self::NewCsv(..) | Self::NewStream => Ok(()),
             Self::Zarr(mut store) => Ok(store.end(end)?),
             Self::Csv(writer) => writer.finish(end.simulation, end.ending),
-            Self::Stream(stream, _) => stream.finish(end.ending),
+            Self::Stream(stream) => stream.finish(end.ending),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Arrow is left to the Python package, and the message says how to get it.
+    #[test]
+    fn an_arrow_stream_is_refused_with_what_to_do() {
+        let place = Place {
+            output: Some("-".into()),
+            format: Some(Format::Arrow),
+            overwrite: false,
+            take_over: false,
+        };
+        let refusal = Target::of(&place).unwrap_err().to_string();
+        for words in ["Python package", "chaindrive[parquet]", "CSV"] {
+            assert!(refusal.contains(words), "{refusal}");
         }
     }
 }

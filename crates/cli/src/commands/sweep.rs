@@ -4,6 +4,7 @@ mod design;
 mod output;
 mod vary;
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use chaindrive::Request;
@@ -18,9 +19,9 @@ use crate::answer::answer;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::request::{RunArguments, SceneArguments, some};
-use crate::stream::Stream;
+use crate::stream;
 use crate::terminal::say;
-use output::{Table, columns, refuse_channels};
+use output::{Table, fill, refuse_channels};
 
 const VALUES: &str = "\
 Values of --vary:
@@ -168,7 +169,7 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     let existing = arguments.place.existing()?;
     let jobs = arguments.jobs;
     let mut progress = Progress::new(arguments.quiet);
-    let (mut table, mut stream) = (None, None);
+    let (mut table, mut on_stdout) = (None, false);
     let mut coordinator: Box<dyn Coordinator> = match target {
         Target::Zarr(path) => {
             let go = || {
@@ -181,9 +182,9 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
             table = Some(Table::begin(&path, &sweep, existing)?);
             Box::new(SweepMemory::new(&sweep, 1))
         }
-        Target::Stream(format) => {
+        Target::Stream => {
             refuse_channels(Path::new("-"), &sweep)?;
-            stream = Some(format);
+            on_stdout = true;
             Box::new(SweepMemory::new(&sweep, 1))
         }
         Target::Nowhere => Box::new(SweepMemory::new(&sweep, 1)),
@@ -208,9 +209,10 @@ pub(crate) fn sweep(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
     if let Some(table) = table.as_mut().filter(|_| tally.open < sweep.len()) {
         table.write(&sweep, coordinator.progress().outcomes, &tally.ending())?;
     }
-    if let Some(format) = stream {
-        let columns = columns(&sweep, &sweep.stack(coordinator.progress().outcomes));
-        Stream::begin(format, columns)?.finish(&tally.ending())?;
+    if on_stdout {
+        let stacked = sweep.stack(coordinator.progress().outcomes);
+        let filled = fill(io::stdout(), &sweep, &stacked, &tally.ending());
+        filled.map_err(stream::refused)?;
     }
     conclude(arguments, &sweep, &tally, (page, report))
 }

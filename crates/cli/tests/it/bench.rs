@@ -26,7 +26,7 @@ fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
 }
 
 #[test]
-fn the_bench_prints_a_table_and_saves_it_with_its_diagram() {
+fn the_bench_prints_a_table_and_saves_it() {
     let folder = folder();
     let at = folder.path();
     let short = [
@@ -57,10 +57,6 @@ fn the_bench_prints_a_table_and_saves_it_with_its_diagram() {
     let csv = fs::read_to_string(at.join("work-precision.csv")).unwrap();
     assert!(csv.starts_with("method,step,tolerance,onset_depth,wall,cpu,"));
     assert_eq!(csv.lines().count(), 1 + 6 + 2);
-    let svg = fs::read_to_string(at.join("work-precision.svg")).unwrap();
-    for word in ["<svg", "verlet", "rk4", "wall time", "Spinning ring"] {
-        assert!(svg.contains(word), "{word}");
-    }
 
     let (code, _, err) = run(at, &short);
     assert_eq!(code, 3, "{err}");

@@ -6,11 +6,10 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use chaindrive::record::{Ending, Existing};
-use chaindrive::sweep::{Coordinate, Outcome, Progress, Stacked, Sweep};
+use chaindrive::sweep::{Outcome, Progress, Stacked, Sweep};
 
-use crate::csv::{Claimed, VARIANT, claim, failed, incomplete, named};
+use crate::csv::{Claimed, VARIANT, claim, digits, failed, incomplete, named};
 use crate::failure::Failure;
-use crate::stream::{Cells, Column};
 
 /// Wall time between two writes while the sweep goes on.
 const WRITE_EVERY: Duration = Duration::from_secs(5);
@@ -72,8 +71,8 @@ impl Table {
         ending: &Ending,
     ) -> Result<(), Failure> {
         let (claim, stacked) = (&self.claimed.claim, sweep.stack(outcomes));
-        let made =
-            File::create(claim.workshop()).and_then(|file| fill(file, sweep, &stacked, ending));
+        let made = File::create(claim.workshop());
+        let made = made.and_then(|file| fill(file, sweep, &stacked, ending)?.sync_all());
         made.map_err(|source| failed(&self.claimed.path, source))?;
         claim.put_in_place()?;
         self.running = *ending == Ending::None;
@@ -114,40 +113,39 @@ pub(super) fn refuse_channels(path: &Path, sweep: &Sweep) -> Result<(), Failure>
     )))
 }
 
-fn fill(file: File, sweep: &Sweep, stacked: &Stacked, ending: &Ending) -> io::Result<()> {
-    let mut table = csv::Writer::from_writer(file);
+/// Writes the table, with a row a variant, and hands back what it was written to.
+pub(super) fn fill<W: Write>(
+    to: W,
+    sweep: &Sweep,
+    stacked: &Stacked,
+    ending: &Ending,
+) -> io::Result<W> {
+    let mut table = csv::Writer::from_writer(to);
     let columns = columns(sweep, stacked);
-    table.write_record(columns.iter().map(|it| named(&it.name, it.unit.as_deref())))?;
-    for index in 0..sweep.len() {
-        table.write_record(columns.iter().map(|it| it.cells.text(index)))?;
+    table.write_record(columns.iter().map(|(heading, _)| heading))?;
+    for variant in 0..sweep.len() {
+        table.write_record(columns.iter().map(|(_, cell)| cell(variant)))?;
     }
-    let mut file = table
+    let mut to = table
         .into_inner()
         .map_err(csv::IntoInnerError::into_error)?;
-    write!(file, "{}", incomplete(ending).unwrap_or_default())?;
-    file.sync_all()
+    write!(to, "{}", incomplete(ending).unwrap_or_default())?;
+    to.flush()?;
+    Ok(to)
 }
 
-/// The table of a sweep, with a row a variant.
-pub(super) fn columns(sweep: &Sweep, stacked: &Stacked) -> Vec<Column> {
-    let variants = i64::try_from(sweep.len()).unwrap_or(i64::MAX);
-    let mut columns = vec![Column {
-        name: VARIANT.to_owned(),
-        unit: None,
-        cells: Cells::Whole((0..variants).collect()),
-    }];
-    let indices: Vec<Vec<usize>> = (0..sweep.len()).map(|it| sweep.indices(it)).collect();
+/// The heading of a column, and its cell by the number of the variant.
+type Column<'a> = (String, Box<dyn Fn(usize) -> String + 'a>);
+
+/// What tells the variants apart, the statistics of each, and what is said of it.
+fn columns<'a>(sweep: &'a Sweep, stacked: &'a Stacked) -> Vec<Column<'a>> {
+    let mut columns: Vec<Column<'a>> =
+        vec![(VARIANT.to_owned(), Box::new(|variant| variant.to_string()))];
     for (which, dimension) in sweep.dimensions().iter().enumerate() {
-        let at = indices.iter().map(|indices| indices[which]);
-        columns.push(Column {
-            name: dimension.name.clone(),
-            unit: dimension.unit.map(str::to_owned),
-            cells: match &dimension.values {
-                Coordinate::Numbers(numbers) => Cells::Numbers(at.map(|at| numbers[at]).collect()),
-                Coordinate::Whole(numbers) => Cells::Whole(at.map(|at| numbers[at]).collect()),
-                Coordinate::Texts(texts) => Cells::Texts(at.map(|at| texts[at].clone()).collect()),
-            },
-        });
+        columns.push((
+            named(&dimension.name, dimension.unit),
+            Box::new(move |variant| dimension.values.text(sweep.indices(variant)[which])),
+        ));
     }
     for it in &stacked.quantities {
         let (name, width) = (it.quantity.name(), it.values.len() / sweep.len());
@@ -155,28 +153,22 @@ pub(super) fn columns(sweep: &Sweep, stacked: &Stacked) -> Vec<Column> {
             let mut labels = stacked.labels.iter();
             labels.find(|(known, _)| known == along)
         });
-        columns.extend((0..width).map(|entry| {
-            Column {
-                name: match labels {
-                    None => name.to_owned(),
-                    Some((_, labels)) => format!("{name}[{}]", labels.text(entry)),
-                },
-                unit: Some(it.unit.clone()),
-                cells: Cells::Numbers(
-                    it.values
-                        .iter()
-                        .skip(entry)
-                        .step_by(width)
-                        .copied()
-                        .collect(),
-                ),
-            }
-        }));
+        for entry in 0..width {
+            let name = match labels {
+                None => name.to_owned(),
+                Some((_, labels)) => format!("{name}[{}]", labels.text(entry)),
+            };
+            columns.push((
+                named(&name, Some(&it.unit)),
+                Box::new(move |variant| digits(it.values[variant * width + entry])),
+            ));
+        }
     }
-    columns.extend(stacked.texts.iter().map(|it| Column {
-        name: it.name.to_owned(),
-        unit: None,
-        cells: Cells::Texts(it.texts.clone()),
-    }));
+    for it in &stacked.texts {
+        columns.push((
+            it.name.to_owned(),
+            Box::new(|variant| it.texts[variant].clone()),
+        ));
+    }
     columns
 }

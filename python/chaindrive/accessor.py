@@ -1,6 +1,6 @@
 """The accessor ``run.drive``: every analysis of a run as a method of its dataset.
 
-Importing this module registers it; chaindrive does so when it first makes or opens a dataset.
+It stands above all that it takes; `labelled` has xarray find it when somebody first asks for it.
 """
 
 from __future__ import annotations
@@ -35,10 +35,6 @@ from chaindrive.page import Page, page_of
 __all__ = ["DriveAccessor"]
 
 
-def __dir__() -> list[str]:
-    return list(__all__)
-
-
 Found = TypeVar("Found")
 
 
@@ -60,7 +56,6 @@ def _method(function: Callable[..., Found]) -> Callable[..., Found]:
     return method
 
 
-@xr.register_dataset_accessor("drive")  # type: ignore[no-untyped-call]
 class DriveAccessor:
     """Analysis of a run; every method is the function of the same name in `analysis`.
 
