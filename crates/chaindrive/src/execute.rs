@@ -1,6 +1,6 @@
 //! One run, whoever asks for it: assemble, choose, step, sample, judge.
 
-mod set_off;
+mod start;
 
 use std::convert::Infallible;
 
@@ -19,7 +19,7 @@ use crate::{
     Channel, RanIn, Request, Run, RunIn, Simulation, SimulationError, SnapshotError, Verdict,
 };
 
-use set_off::{Begun, Chosen, choose, not_begun, set_off, short_runs};
+use start::{RunState, Setup, not_started, short_runs};
 
 /// Why there is no result at all, or no whole one.
 #[derive(Debug, thiserror::Error)]
@@ -127,7 +127,7 @@ pub(crate) fn choice(
     request: &Request,
     onlooker: &dyn Onlooker,
 ) -> Result<Option<Choice>, RunError<Infallible>> {
-    Ok(choose(request, None, onlooker)?.provenance.choice)
+    Ok(Setup::new(request, None, onlooker)?.provenance.choice)
 }
 
 /// Carries out a request by a choice that was made for a drive like this one, if there is one.
@@ -137,16 +137,16 @@ pub(crate) fn execute_by<S: Sink>(
     sink: &mut S,
     onlooker: &dyn Onlooker,
 ) -> Result<Report, RunError<S::Error>> {
-    let chosen = choose(request, known, onlooker)?;
+    let setup = Setup::new(request, known, onlooker)?;
     let mut waiting = None;
-    if chosen.provenance.run.run_in != RunIn::None {
-        let simulation = chosen.simulation().map_err(not_begun)?;
+    if setup.provenance.run.run_in != RunIn::None {
+        let simulation = setup.simulation().map_err(not_started)?;
         let channels = channels(request, &simulation).map_err(RunError::Start)?;
-        sink.has_room(&simulation, &channels, &chosen.provenance.run)
+        sink.has_room(&simulation, &channels, &setup.provenance.run)
             .map_err(RunError::Sink)?;
         if request.checkpoint_every.is_some() {
             // Whoever is stopped or killed in the run-in goes on from here.
-            let mut provenance = chosen.provenance.clone();
+            let mut provenance = setup.provenance.clone();
             announce(request, &mut provenance, &simulation, sink)?;
             let summary = Summary::new(&simulation);
             let checkpoint = Checkpoint::of_beginning(request, &provenance, &simulation);
@@ -155,7 +155,8 @@ pub(crate) fn execute_by<S: Sink>(
             waiting = Some((simulation, provenance, summary));
         }
     }
-    let begun = match (set_off(request, chosen, onlooker), waiting) {
+    let started = setup.run_in(request, onlooker).map_err(not_started);
+    let state = match (started, waiting) {
         (Err(error), Some((simulation, provenance, summary))) => {
             let ending = match &error {
                 RunError::Interrupted => Ending::Interrupted,
@@ -165,9 +166,9 @@ pub(crate) fn execute_by<S: Sink>(
                 .map_err(RunError::Sink)?;
             return Err(error);
         }
-        (begun, _) => begun?,
+        (started, _) => started?,
     };
-    complete(request, begun, sink, onlooker)
+    complete(request, state, sink, onlooker)
 }
 
 impl Stopped {
@@ -198,26 +199,25 @@ fn resume<S: Sink>(
     provenance.choice = checkpoint.choice().cloned();
     let drive = request.scene.drive().map_err(RunError::Scene)?;
     let Some(snapshot) = &checkpoint.snapshot else {
-        let start = assemble(&drive, &|| onlooker.stop()).map_err(not_begun)?;
-        let chosen = Chosen {
+        let setup = Setup {
+            assembled: assemble(&drive, &|| onlooker.stop()).map_err(not_started)?,
             drive,
-            start,
             provenance,
             short_runs: None,
             is_verified: checkpoint.is_verified,
         };
-        let begun = set_off(&request, chosen, onlooker)?;
-        return complete(&request, begun, sink, onlooker);
+        let state = setup.run_in(&request, onlooker).map_err(not_started)?;
+        return complete(&request, state, sink, onlooker);
     };
     let start = checkpoint.start(&drive, &|| onlooker.stop());
     let start = start.map_err(|error| match error {
-        NotAgain::Start(error) => not_begun(error),
+        NotAgain::Start(error) => not_started(error),
         NotAgain::Snapshot(error) => RunError::Snapshot(error),
     })?;
     let short_runs = if checkpoint.has_moved() {
         ShortRuns::default()
     } else {
-        short_runs(&request, &provenance, &start, onlooker).map_err(not_begun)?
+        short_runs(&request, &provenance, &start, onlooker).map_err(not_started)?
     };
     let simulation = Simulation::from_assembled(start, &request.run);
     let mut simulation = simulation.map_err(RunError::Start)?;
@@ -225,7 +225,7 @@ fn resume<S: Sink>(
     restored.map_err(RunError::Snapshot)?;
     simulation.has_spent(stepping);
     provenance.ran_in = checkpoint.ran_in();
-    let begun = Begun {
+    let state = RunState {
         drive,
         simulation,
         provenance,
@@ -233,24 +233,24 @@ fn resume<S: Sink>(
         estimate: None,
         summary: checkpoint.summary.clone(),
     };
-    complete(&request, begun, sink, onlooker)
+    complete(&request, state, sink, onlooker)
 }
 
 /// Takes a run to its end.
 fn complete<S: Sink>(
     request: &Request,
-    begun: Begun,
+    state: RunState,
     sink: &mut S,
     onlooker: &dyn Onlooker,
 ) -> Result<Report, RunError<S::Error>> {
-    let Begun {
+    let RunState {
         drive,
         mut simulation,
         mut provenance,
         mut short_runs,
         estimate,
         mut summary,
-    } = begun;
+    } = state;
     let watch = || onlooker.stop();
     let run = provenance.run.clone();
     announce(request, &mut provenance, &simulation, sink)?;
@@ -422,13 +422,14 @@ impl Simulation {
         if request.run.run_in == RunIn::Usual {
             request.run.run_in = RunIn::None;
         }
-        let begun = set_off(&request, choose(&request, None, onlooker)?, onlooker)?;
-        if !begun.simulation.has_samples_ahead() {
-            return Ok(begun.simulation);
+        let setup = Setup::new(&request, None, onlooker)?;
+        let state = setup.run_in(&request, onlooker).map_err(not_started)?;
+        if !state.simulation.has_samples_ahead() {
+            return Ok(state.simulation);
         }
-        // It is read at any time from the beginning on.
-        let start = begun.simulation.assembled().clone();
-        Self::from_assembled(start, &begun.provenance.run).map_err(not_begun)
+        // It is read at any time from t = 0 on, and not at the samples that the run-in took.
+        let start = state.simulation.assembled().clone();
+        Self::from_assembled(start, &state.provenance.run).map_err(not_started)
     }
 }
 

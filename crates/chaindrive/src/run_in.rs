@@ -53,7 +53,7 @@ pub struct RanIn {
 }
 
 impl RanIn {
-    /// A run-in longer than nothing: the record begins behind the assembly.
+    /// A run-in longer than nothing: the record begins after the assembly.
     pub(crate) fn has_moved(&self) -> bool {
         self.time > 0.0
     }
@@ -120,19 +120,30 @@ pub fn run_in(
     if run.run_in == RunIn::Usual {
         return Ok((start, None));
     }
-    let beginning = begin(start, run, onlooker)?;
-    Ok((beginning.start, beginning.ran_in))
+    let record = record_start(start, run, onlooker)?;
+    Ok((record.start, record.ran_in))
 }
 
-/// A drive where its record begins.
-pub(crate) struct Beginning {
+/// Where a record begins.
+pub(crate) struct RecordStart {
+    /// The drive there.
     pub(crate) start: Assembled,
+    /// The run-in before, if there was one or none by default.
     pub(crate) ran_in: Option<RanIn>,
-    /// The simulation from there, where the run-in has gone on with it.
+    /// The simulation of the run-in, where it went on beyond the start of the record: it has samples from there on.
     pub(crate) simulation: Option<Simulation>,
 }
 
-impl Beginning {
+impl RecordStart {
+    /// The start of a record that nothing is simulated of so far.
+    fn at(start: Assembled, ran_in: Option<RanIn>) -> Self {
+        Self {
+            start,
+            ran_in,
+            simulation: None,
+        }
+    }
+
     /// A run-in longer than nothing.
     pub(crate) fn has_moved(&self) -> bool {
         self.ran_in.as_ref().is_some_and(RanIn::has_moved)
@@ -140,20 +151,15 @@ impl Beginning {
 }
 
 /// Runs an assembled drive in, if the run says so.
-pub(crate) fn begin(
+pub(crate) fn record_start(
     start: Assembled,
     run: &Run,
     onlooker: &dyn Onlooker,
-) -> Result<Beginning, SimulationError> {
+) -> Result<RecordStart, SimulationError> {
     let stop = &|| onlooker.stop();
     run.check()?;
-    let beginning = |start, ran_in| Beginning {
-        start,
-        ran_in,
-        simulation: None,
-    };
     let time = match &run.run_in {
-        RunIn::None => return Ok(beginning(start, None)),
+        RunIn::None => return Ok(RecordStart::at(start, None)),
         RunIn::Time(time) => *time,
         RunIn::Turns { turns, sprocket } => turns_last(&start, *turns, sprocket.as_deref())?,
         RunIn::Usual => {
@@ -163,26 +169,19 @@ pub(crate) fn begin(
                     left_out: Some(why.to_owned()),
                     ..RanIn::lasted(0.0, None)
                 };
-                return Ok(beginning(start, Some(ran_in)));
+                return Ok(RecordStart::at(start, Some(ran_in)));
             }
             let asked = Run {
                 run_in: RunIn::Auto,
                 ..run.clone()
             };
-            let mut found = begin(start, &asked, onlooker)?;
-            if let Some(ran_in) = &mut found.ran_in {
+            let mut record = record_start(start, &asked, onlooker)?;
+            if let Some(ran_in) = &mut record.ran_in {
                 ran_in.by_default = true;
             }
-            return Ok(found);
+            return Ok(record);
         }
-        RunIn::Auto => {
-            let settled = steady::settle(&start, run, onlooker)?;
-            let ran_in = RanIn::lasted(settled.start.zero, Some(settled.is_steady));
-            return Ok(Beginning {
-                simulation: Some(settled.simulation),
-                ..beginning(settled.start, Some(ran_in))
-            });
-        }
+        RunIn::Auto => return steady::steady_start(&start, run, onlooker),
     };
     let ran_in = Some(RanIn::lasted(time, None));
     let mut moving = before(&start.drive, time, run, stop)?;
@@ -193,7 +192,7 @@ pub(crate) fn begin(
             return Err(SimulationError::Interrupted);
         }
     }
-    Ok(beginning(moving.as_start(), ran_in))
+    Ok(RecordStart::at(moving.as_start(), ran_in))
 }
 
 /// The drive in motion from so long before t = 0 \[s\]; nothing is logged on the way.

@@ -8,18 +8,18 @@
 mod absent;
 mod location;
 
-use std::ffi::{c_char, c_int, c_uint};
+use std::ffi::{CStr, c_char, c_int, c_uint};
 
 use chaindrive_couple::{Fault, Instance, Phase};
 
 pub use absent::*;
 
 use crate::calls::{DISCARD, OK, instantiate, make_none, named, on};
-use crate::fmi3::{debug_logging, read, write};
 use crate::logger::{Listener, Logger, Logger2};
 use crate::pointers::{Room, array, give, text};
 use crate::states;
-use crate::units::{self, Handle};
+use crate::units::Handle;
+use crate::versions::functions;
 
 /// `fmi2CallbackFunctions`; the library keeps its own memory and never works behind the importer.
 #[derive(Clone, Copy, Debug)]
@@ -59,24 +59,42 @@ pub extern "C" fn fmi2GetVersion() -> *const c_char {
     c"2.0".as_ptr()
 }
 
-/// Switches messages of calls on and off.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetDebugLogging(
-    instance: Handle,
-    logging_on: c_int,
-    n_categories: usize,
-    categories: *const *const c_char,
-) -> c_int {
-    // SAFETY: the caller promises an array of so many texts.
-    unsafe {
-        debug_logging(
-            instance,
-            "fmi2SetDebugLogging",
-            logging_on != 0,
-            n_categories,
-            categories,
-        )
-    }
+functions! { alike:
+    fmi2SetDebugLogging(c_int), fmi2FreeInstance,
+    fmi2ExitInitializationMode, fmi2Terminate, fmi2Reset,
+    fmi2GetFMUstate, fmi2SetFMUstate, fmi2FreeFMUstate,
+    fmi2SerializedFMUstateSize, fmi2SerializeFMUstate, fmi2DeSerializeFMUstate
+}
+
+functions! { calls:
+    /// Says the start time.
+    fmi2SetupExperiment(
+        _tolerance_defined: c_int, _tolerance: f64, start_time: f64, _stop_time_defined: c_int, _stop_time: f64
+    ) = |_, instance| instance.start_at(start_time);
+    /// Begins the initialization.
+    fmi2EnterInitializationMode() = |_, instance| instance.enter_initialization(instance.time());
+    /// Moves on by a step.
+    fmi2DoStep(
+        current_communication_point: f64, communication_step_size: f64, _no_set_state_prior: c_int
+    ) = |_, instance| instance.step(current_communication_point, communication_step_size);
+}
+
+functions! { values:
+    /// Numbers.
+    read fmi2GetReal(*mut f64) = Instance::real;
+    /// Enumerations.
+    read fmi2GetInteger(*mut c_int) = |instance, reference| {
+        let choice = instance.choice(reference);
+        choice.map(|it| c_int::try_from(it).unwrap_or(c_int::MAX))
+    };
+    /// Texts; they live as long as the instance.
+    read fmi2GetString(*mut *const c_char) =
+        |instance, reference| instance.text(reference).map(CStr::as_ptr);
+    /// Numbers.
+    write fmi2SetReal(*const f64) = Instance::set_real;
+    /// Enumerations.
+    write fmi2SetInteger(*const c_int) =
+        |instance, reference, value| instance.set_choice(reference, i64::from(value));
 }
 
 /// Makes an instance.
@@ -112,154 +130,6 @@ pub unsafe extern "C" fn fmi2Instantiate(
     instantiate(function, guid, path.as_deref(), logger)
 }
 
-/// Lets an instance go; null is no mistake.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2FreeInstance(instance: Handle) {
-    if !instance.is_null() && !units::free(instance) {
-        eprintln!("fmi2FreeInstance: no instance has this handle; it is freed already");
-    }
-}
-
-/// Says the start time.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2SetupExperiment(
-    instance: Handle,
-    _tolerance_defined: c_int,
-    _tolerance: f64,
-    start_time: f64,
-    _stop_time_defined: c_int,
-    _stop_time: f64,
-) -> c_int {
-    on(instance, "fmi2SetupExperiment", |_, instance| {
-        instance.start_at(start_time)
-    })
-}
-
-/// Begins the initialization.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2EnterInitializationMode(instance: Handle) -> c_int {
-    on(instance, "fmi2EnterInitializationMode", |_, instance| {
-        instance.enter_initialization(instance.time())
-    })
-}
-
-/// Ends the initialization.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2ExitInitializationMode(instance: Handle) -> c_int {
-    on(instance, "fmi2ExitInitializationMode", |_, instance| {
-        instance.exit_initialization()
-    })
-}
-
-/// Ends the simulation.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2Terminate(instance: Handle) -> c_int {
-    on(instance, "fmi2Terminate", |_, instance| {
-        instance.terminate()
-    })
-}
-
-/// Goes back to where the instance was made.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2Reset(instance: Handle) -> c_int {
-    on(instance, "fmi2Reset", |_, instance| {
-        instance.reset();
-        Ok(())
-    })
-}
-
-/// Numbers.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetReal(
-    instance: Handle,
-    references: *const c_uint,
-    count: usize,
-    values: *mut f64,
-) -> c_int {
-    // SAFETY: the caller promises arrays of this length.
-    unsafe {
-        read(
-            instance,
-            "fmi2GetReal",
-            (references, count),
-            (values, count),
-            Instance::real,
-        )
-    }
-}
-
-/// Enumerations.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetInteger(
-    instance: Handle,
-    references: *const c_uint,
-    count: usize,
-    values: *mut c_int,
-) -> c_int {
-    let get = |it: &mut Instance, reference| {
-        it.choice(reference)
-            .map(|it| c_int::try_from(it).unwrap_or(c_int::MAX))
-    };
-    // SAFETY: the caller promises arrays of this length.
-    unsafe {
-        read(
-            instance,
-            "fmi2GetInteger",
-            (references, count),
-            (values, count),
-            get,
-        )
-    }
-}
-
-/// Texts; they live as long as the instance.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetString(
-    instance: Handle,
-    references: *const c_uint,
-    count: usize,
-    values: *mut *const c_char,
-) -> c_int {
-    let get = |it: &mut Instance, reference| it.text(reference).map(std::ffi::CStr::as_ptr);
-    // SAFETY: the caller promises arrays of this length.
-    unsafe {
-        read(
-            instance,
-            "fmi2GetString",
-            (references, count),
-            (values, count),
-            get,
-        )
-    }
-}
-
-/// Numbers.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetReal(
-    instance: Handle,
-    references: *const c_uint,
-    count: usize,
-    values: *const f64,
-) -> c_int {
-    let (to, from) = ((references, count), (values, count));
-    // SAFETY: the caller promises arrays of this length.
-    unsafe { write(instance, "fmi2SetReal", to, from, Instance::set_real) }
-}
-
-/// Enumerations.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetInteger(
-    instance: Handle,
-    references: *const c_uint,
-    count: usize,
-    values: *const c_int,
-) -> c_int {
-    let (to, from) = ((references, count), (values, count));
-    let set = |it: &mut Instance, reference, value| it.set_choice(reference, i64::from(value));
-    // SAFETY: the caller promises arrays of this length.
-    unsafe { write(instance, "fmi2SetInteger", to, from, set) }
-}
-
 /// Slopes of inputs in the next step.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
@@ -290,67 +160,13 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     })
 }
 
-/// Keeps the state.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2GetFMUstate(instance: Handle, state: *mut Handle) -> c_int {
-    states::get(instance, "fmi2GetFMUstate", state)
-}
-
-/// Goes back, or on, to a state.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2SetFMUstate(instance: Handle, state: Handle) -> c_int {
-    states::set(instance, "fmi2SetFMUstate", state)
-}
-
-/// Lets a state go; null is no mistake.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2FreeFMUstate(instance: Handle, state: *mut Handle) -> c_int {
-    states::free(instance, "fmi2FreeFMUstate", state)
-}
-
-/// Number of bytes of a state.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2SerializedFMUstateSize(
-    instance: Handle,
-    state: Handle,
-    size: *mut usize,
-) -> c_int {
-    states::size(instance, "fmi2SerializedFMUstateSize", state, size)
-}
-
-/// A state as bytes, for the same build to read back.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2SerializeFMUstate(
-    instance: Handle,
-    state: Handle,
-    bytes: *mut u8,
-    size: usize,
-) -> c_int {
-    states::write(instance, "fmi2SerializeFMUstate", state, bytes, size)
-}
-
-/// The state that was written down.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2DeSerializeFMUstate(
-    instance: Handle,
-    bytes: *const u8,
-    size: usize,
-    state: *mut Handle,
-) -> c_int {
-    states::read(instance, "fmi2DeSerializeFMUstate", bytes, size, state)
-}
-
-/// Moves on by a step.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2DoStep(
-    instance: Handle,
-    current_communication_point: f64,
-    communication_step_size: f64,
-    _no_set_state_prior: c_int,
-) -> c_int {
-    on(instance, "fmi2DoStep", |_, instance| {
-        instance.step(current_communication_point, communication_step_size)
-    })
+/// The status of a call for a kind of status; of kinds that the unit does not know nothing is told.
+fn status_of_kind(known: bool, status: c_int) -> c_int {
+    if status == OK && !known {
+        DISCARD
+    } else {
+        status
+    }
 }
 
 /// The last time that was reached.
@@ -360,21 +176,16 @@ pub unsafe extern "C" fn fmi2GetRealStatus(
     kind: c_int,
     value: *mut f64,
 ) -> c_int {
-    let mut discarded = false;
+    let known = kind == LAST_SUCCESSFUL_TIME;
     let status = on(instance, "fmi2GetRealStatus", |_, instance| {
-        discarded = kind != LAST_SUCCESSFUL_TIME;
         // SAFETY: null is refused; otherwise the caller promises room for a number.
         let mut room = unsafe { Room::new(value, 1, 1) }?;
-        if !discarded {
+        if known {
             room.put(0, instance.time());
         }
         Ok(())
     });
-    if status == OK && discarded {
-        DISCARD
-    } else {
-        status
-    }
+    status_of_kind(known, status)
 }
 
 /// Whether the instance wants to end.
@@ -384,19 +195,14 @@ pub unsafe extern "C" fn fmi2GetBooleanStatus(
     kind: c_int,
     value: *mut c_int,
 ) -> c_int {
-    let mut discarded = false;
+    let known = kind == TERMINATED;
     let status = on(instance, "fmi2GetBooleanStatus", |_, instance| {
-        discarded = kind != TERMINATED;
-        if !discarded {
+        if known {
             let ended = instance.phase() == Phase::Failed;
             // SAFETY: the caller promises room for a flag, or null.
             unsafe { give(value, c_int::from(ended)) };
         }
         Ok(())
     });
-    if status == OK && discarded {
-        DISCARD
-    } else {
-        status
-    }
+    status_of_kind(known, status)
 }

@@ -9,18 +9,19 @@
 
 mod absent;
 
-use std::ffi::{c_char, c_int};
+use std::ffi::{CStr, c_char, c_int};
 use std::path::Path;
 
-use chaindrive_couple::{Fault, Instance};
+use chaindrive_couple::Instance;
 
 pub use absent::*;
 
 use crate::calls::{instantiate, named, on};
 use crate::logger::{Listener, Logger, Logger3};
-use crate::pointers::{Room, array, give, text};
+use crate::pointers::{give, text};
 use crate::states;
-use crate::units::{self, Handle};
+use crate::units::Handle;
+use crate::versions::functions;
 
 /// Version of the standard.
 #[unsafe(no_mangle)]
@@ -28,49 +29,32 @@ pub extern "C" fn fmi3GetVersion() -> *const c_char {
     c"3.0".as_ptr()
 }
 
-/// Switches messages of calls on and off.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetDebugLogging(
-    instance: Handle,
-    logging_on: u8,
-    n_categories: usize,
-    categories: *const *const c_char,
-) -> c_int {
-    // SAFETY: the caller promises an array of so many texts.
-    unsafe {
-        debug_logging(
-            instance,
-            "fmi3SetDebugLogging",
-            logging_on != 0,
-            n_categories,
-            categories,
-        )
-    }
+functions! { alike:
+    fmi3SetDebugLogging(u8), fmi3FreeInstance,
+    fmi3ExitInitializationMode, fmi3Terminate, fmi3Reset,
+    fmi3GetFMUState, fmi3SetFMUState, fmi3FreeFMUState,
+    fmi3SerializedFMUStateSize, fmi3SerializeFMUState, fmi3DeserializeFMUState
 }
 
-/// Switches messages of calls on and off, if they are among the categories or none are named.
-///
-/// # Safety
-/// The categories are an array of so many texts.
-pub(crate) unsafe fn debug_logging(
-    instance: Handle,
-    name: &str,
-    follows: bool,
-    count: usize,
-    categories: *const *const c_char,
-) -> c_int {
-    on(instance, name, |unit, _| {
-        // SAFETY: by the contract of this function; there are two categories.
-        let categories = unsafe { array(categories, count, 2) }?;
-        let among = categories.iter().any(|category| {
-            // SAFETY: by the contract of this function.
-            unsafe { text(*category) }.is_some_and(|it| it == c"logAll")
-        });
-        if categories.is_empty() || among {
-            unit.logger.follow(follows);
-        }
-        Ok(())
-    })
+functions! { calls:
+    /// Begins the initialization at a start time.
+    fmi3EnterInitializationMode(
+        _tolerance_defined: u8, _tolerance: f64, start_time: f64, _stop_time_defined: u8, _stop_time: f64
+    ) = |_, instance| instance.enter_initialization(start_time);
+}
+
+functions! { values:
+    /// Numbers.
+    read fmi3GetFloat64(*mut f64, n_values) = Instance::real;
+    /// Enumerations.
+    read fmi3GetInt64(*mut i64, n_values) = |instance, reference| instance.choice(reference);
+    /// Texts; they live as long as the instance.
+    read fmi3GetString(*mut *const c_char, n_values) =
+        |instance, reference| instance.text(reference).map(CStr::as_ptr);
+    /// Numbers.
+    write fmi3SetFloat64(*const f64, n_values) = Instance::set_real;
+    /// Enumerations.
+    write fmi3SetInt64(*const i64, n_values) = Instance::set_choice;
 }
 
 /// Makes an instance.
@@ -97,243 +81,6 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     let token = token.and_then(|it| it.to_str().ok());
     let path = path.and_then(|it| it.to_str().ok()).map(Path::new);
     instantiate("fmi3InstantiateCoSimulation", token, path, logger)
-}
-
-/// Lets an instance go; null is no mistake.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3FreeInstance(instance: Handle) {
-    if !instance.is_null() && !units::free(instance) {
-        eprintln!("fmi3FreeInstance: no instance has this handle; it is freed already");
-    }
-}
-
-/// Begins the initialization at a start time.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3EnterInitializationMode(
-    instance: Handle,
-    _tolerance_defined: u8,
-    _tolerance: f64,
-    start_time: f64,
-    _stop_time_defined: u8,
-    _stop_time: f64,
-) -> c_int {
-    on(instance, "fmi3EnterInitializationMode", |_, instance| {
-        instance.enter_initialization(start_time)
-    })
-}
-
-/// Ends the initialization.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3ExitInitializationMode(instance: Handle) -> c_int {
-    on(instance, "fmi3ExitInitializationMode", |_, instance| {
-        instance.exit_initialization()
-    })
-}
-
-/// Ends the simulation.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3Terminate(instance: Handle) -> c_int {
-    on(instance, "fmi3Terminate", |_, instance| {
-        instance.terminate()
-    })
-}
-
-/// Goes back to where the instance was made.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3Reset(instance: Handle) -> c_int {
-    on(instance, "fmi3Reset", |_, instance| {
-        instance.reset();
-        Ok(())
-    })
-}
-
-/// Reads values into an array of the importer; the first refusal is told, the others are read all the same.
-///
-/// # Safety
-/// The arrays have so many entries.
-pub(crate) unsafe fn read<T: Copy>(
-    handle: Handle,
-    name: &str,
-    (references, count): (*const u32, usize),
-    (values, room): (*mut T, usize),
-    get: impl Fn(&mut Instance, u32) -> Result<T, Fault>,
-) -> c_int {
-    on(handle, name, |_, instance| {
-        same_length(count, room)?;
-        let most = instance.model().variables().len();
-        // SAFETY: by the contract of this function.
-        let references = unsafe { array(references, count, most) }?;
-        // SAFETY: by the contract of this function.
-        let mut values = unsafe { Room::new(values, room, most) }?;
-        let mut refused = Ok(());
-        for (index, reference) in references.iter().enumerate() {
-            match get(instance, *reference) {
-                Ok(value) => values.put(index, value),
-                Err(fault) => refused = refused.and(Err(fault)),
-            }
-        }
-        refused
-    })
-}
-
-/// Sets values from an array of the importer; the first refusal is told, the others are set all the same.
-///
-/// # Safety
-/// The arrays have so many entries.
-pub(crate) unsafe fn write<T: Copy>(
-    handle: Handle,
-    name: &str,
-    (references, count): (*const u32, usize),
-    (values, given): (*const T, usize),
-    set: impl Fn(&mut Instance, u32, T) -> Result<(), Fault>,
-) -> c_int {
-    on(handle, name, |_, instance| {
-        same_length(count, given)?;
-        let most = instance.model().variables().len();
-        // SAFETY: by the contract of this function.
-        let references = unsafe { array(references, count, most) }?;
-        // SAFETY: by the contract of this function.
-        let values = unsafe { array(values, given, most) }?;
-        let mut refused = Ok(());
-        for (reference, value) in references.iter().zip(values) {
-            refused = refused.and(set(instance, *reference, *value));
-        }
-        refused
-    })
-}
-
-fn same_length(references: usize, values: usize) -> Result<(), Fault> {
-    if references == values {
-        return Ok(());
-    }
-    let uneven =
-        format!("{references} value references and {values} values; every variable has one");
-    Err(Fault(uneven))
-}
-
-/// Numbers.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetFloat64(
-    instance: Handle,
-    references: *const u32,
-    n_references: usize,
-    values: *mut f64,
-    n_values: usize,
-) -> c_int {
-    let (from, to) = ((references, n_references), (values, n_values));
-    // SAFETY: the caller promises arrays of these lengths.
-    unsafe { read(instance, "fmi3GetFloat64", from, to, Instance::real) }
-}
-
-/// Enumerations.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetInt64(
-    instance: Handle,
-    references: *const u32,
-    n_references: usize,
-    values: *mut i64,
-    n_values: usize,
-) -> c_int {
-    let (from, to) = ((references, n_references), (values, n_values));
-    // SAFETY: the caller promises arrays of these lengths.
-    unsafe {
-        read(instance, "fmi3GetInt64", from, to, |it, reference| {
-            it.choice(reference)
-        })
-    }
-}
-
-/// Texts; they live as long as the instance.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetString(
-    instance: Handle,
-    references: *const u32,
-    n_references: usize,
-    values: *mut *const c_char,
-    n_values: usize,
-) -> c_int {
-    let (from, to) = ((references, n_references), (values, n_values));
-    let get = |it: &mut Instance, reference| it.text(reference).map(std::ffi::CStr::as_ptr);
-    // SAFETY: the caller promises arrays of these lengths.
-    unsafe { read(instance, "fmi3GetString", from, to, get) }
-}
-
-/// Numbers.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetFloat64(
-    instance: Handle,
-    references: *const u32,
-    n_references: usize,
-    values: *const f64,
-    n_values: usize,
-) -> c_int {
-    let (to, from) = ((references, n_references), (values, n_values));
-    // SAFETY: the caller promises arrays of these lengths.
-    unsafe { write(instance, "fmi3SetFloat64", to, from, Instance::set_real) }
-}
-
-/// Enumerations.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetInt64(
-    instance: Handle,
-    references: *const u32,
-    n_references: usize,
-    values: *const i64,
-    n_values: usize,
-) -> c_int {
-    let (to, from) = ((references, n_references), (values, n_values));
-    // SAFETY: the caller promises arrays of these lengths.
-    unsafe { write(instance, "fmi3SetInt64", to, from, Instance::set_choice) }
-}
-
-/// Keeps the state.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3GetFMUState(instance: Handle, state: *mut Handle) -> c_int {
-    states::get(instance, "fmi3GetFMUState", state)
-}
-
-/// Goes back, or on, to a state.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3SetFMUState(instance: Handle, state: Handle) -> c_int {
-    states::set(instance, "fmi3SetFMUState", state)
-}
-
-/// Lets a state go; null is no mistake.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3FreeFMUState(instance: Handle, state: *mut Handle) -> c_int {
-    states::free(instance, "fmi3FreeFMUState", state)
-}
-
-/// Number of bytes of a state.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3SerializedFMUStateSize(
-    instance: Handle,
-    state: Handle,
-    size: *mut usize,
-) -> c_int {
-    states::size(instance, "fmi3SerializedFMUStateSize", state, size)
-}
-
-/// A state as bytes, for the same build to read back.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3SerializeFMUState(
-    instance: Handle,
-    state: Handle,
-    bytes: *mut u8,
-    size: usize,
-) -> c_int {
-    states::write(instance, "fmi3SerializeFMUState", state, bytes, size)
-}
-
-/// The state that was written down.
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3DeserializeFMUState(
-    instance: Handle,
-    bytes: *const u8,
-    size: usize,
-    state: *mut Handle,
-) -> c_int {
-    states::read(instance, "fmi3DeserializeFMUState", bytes, size, state)
 }
 
 /// Moves on by a step.

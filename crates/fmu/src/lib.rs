@@ -16,6 +16,7 @@ mod misuse;
 mod pointers;
 mod states;
 mod units;
+mod versions;
 
 /// Blocks that begin where a cache line does, as in the other forms of the program.
 #[cfg(not(test))]

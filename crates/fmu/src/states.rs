@@ -4,12 +4,10 @@
 //! "chdrive\n"   length of all, 8 bytes from the least on   the state, as a sealed value
 //! ```
 
-use std::ffi::c_int;
 use std::sync::{Arc, MutexGuard, PoisonError};
 
-use chaindrive_couple::{Fault, Saved};
+use chaindrive_couple::{Fault, Instance, Saved};
 
-use crate::calls::on;
 use crate::pointers::{Room, array, give};
 use crate::units::{Handle, Unit, handle, number};
 
@@ -58,96 +56,73 @@ fn put(unit: &Unit, place: *mut Handle, saved: Saved) -> Result<(), Fault> {
     Ok(())
 }
 
-pub(crate) fn get(instance: Handle, name: &str, place: *mut Handle) -> c_int {
-    on(instance, name, |unit, instance| {
-        put(unit, place, instance.save()?)
-    })
+pub(crate) fn get(unit: &Unit, instance: &mut Instance, place: *mut Handle) -> Result<(), Fault> {
+    put(unit, place, instance.save()?)
 }
 
-pub(crate) fn set(instance: Handle, name: &str, state: Handle) -> c_int {
-    on(instance, name, |unit, instance| {
-        instance.restore(known(unit, state)?.as_ref())
-    })
+pub(crate) fn set(unit: &Unit, instance: &mut Instance, state: Handle) -> Result<(), Fault> {
+    instance.restore(known(unit, state)?.as_ref())
 }
 
-pub(crate) fn free(instance: Handle, name: &str, place: *mut Handle) -> c_int {
-    on(instance, name, |unit, _| {
-        if place.is_null() {
-            return Ok(());
-        }
-        // SAFETY: not null, and the standard has a handle there.
-        let there = unsafe { array(place.cast_const(), 1, 1) }?[0];
-        if there.is_null() {
-            return Ok(());
-        }
-        known(unit, there)?;
-        states(unit).remove(&there.addr());
-        // SAFETY: it was read above, and the standard lets it be written.
-        unsafe { give(place, std::ptr::null_mut()) };
-        Ok(())
-    })
+pub(crate) fn free(unit: &Unit, place: *mut Handle) -> Result<(), Fault> {
+    if place.is_null() {
+        return Ok(());
+    }
+    // SAFETY: not null, and the standard has a handle there.
+    let there = unsafe { array(place.cast_const(), 1, 1) }?[0];
+    if there.is_null() {
+        return Ok(());
+    }
+    known(unit, there)?;
+    states(unit).remove(&there.addr());
+    // SAFETY: it was read above, and the standard lets it be written.
+    unsafe { give(place, std::ptr::null_mut()) };
+    Ok(())
 }
 
-pub(crate) fn size(instance: Handle, name: &str, state: Handle, size: *mut usize) -> c_int {
-    on(instance, name, |unit, _| {
-        let bytes = bytes(known(unit, state)?.as_ref());
-        // SAFETY: null is refused; otherwise the standard has room for a length there.
-        unsafe { Room::new(size, 1, 1) }?.put(0, bytes.len());
-        Ok(())
-    })
+pub(crate) fn size(unit: &Unit, state: Handle, size: *mut usize) -> Result<(), Fault> {
+    let bytes = bytes(known(unit, state)?.as_ref());
+    // SAFETY: null is refused; otherwise the standard has room for a length there.
+    unsafe { Room::new(size, 1, 1) }?.put(0, bytes.len());
+    Ok(())
 }
 
-pub(crate) fn write(
-    instance: Handle,
-    name: &str,
-    state: Handle,
-    room: *mut u8,
-    size: usize,
-) -> c_int {
-    on(instance, name, |unit, _| {
-        let bytes = bytes(known(unit, state)?.as_ref());
-        if size != bytes.len() {
-            let needed = bytes.len();
-            return Err(Fault(format!(
-                "room for {size} bytes; the state has {needed}"
-            )));
-        }
-        // SAFETY: null is refused; otherwise the importer says that so many bytes are there.
-        let mut room = unsafe { Room::new(room, size, MOST) }?;
-        for (index, byte) in bytes.into_iter().enumerate() {
-            room.put(index, byte);
-        }
-        Ok(())
-    })
+pub(crate) fn write(unit: &Unit, state: Handle, room: *mut u8, size: usize) -> Result<(), Fault> {
+    let bytes = bytes(known(unit, state)?.as_ref());
+    if size != bytes.len() {
+        let needed = bytes.len();
+        return Err(Fault(format!(
+            "room for {size} bytes; the state has {needed}"
+        )));
+    }
+    // SAFETY: null is refused; otherwise the importer says that so many bytes are there.
+    let mut room = unsafe { Room::new(room, size, MOST) }?;
+    for (index, byte) in bytes.into_iter().enumerate() {
+        room.put(index, byte);
+    }
+    Ok(())
 }
 
 pub(crate) fn read(
-    instance: Handle,
-    name: &str,
+    unit: &Unit,
     bytes: *const u8,
     size: usize,
     place: *mut Handle,
-) -> c_int {
-    on(instance, name, |unit, _| {
-        let foreign = || Fault("the bytes are no state of a unit".to_owned());
-        if size < HEADING {
-            return Err(foreign());
-        }
-        // SAFETY: null is refused; the importer says that more bytes than these are there.
-        let heading = unsafe { array(bytes, HEADING, HEADING) }?;
-        let (mark, length) = heading.split_at(MARK.len());
-        let length = length.iter().rev();
-        let length = length.fold(0u64, |sum, byte| sum << 8 | u64::from(*byte));
-        if mark != MARK || usize::try_from(length) != Ok(size) {
-            return Err(foreign());
-        }
-        // SAFETY: as above; the heading says the same length.
-        let whole = unsafe { array(bytes, size, MOST) }?;
-        let saved = Saved::from_bytes(&whole[HEADING..]);
-        put(
-            unit,
-            place,
-            saved.map_err(|error| Fault(error.to_string()))?,
-        )
-    })
+) -> Result<(), Fault> {
+    let foreign = || Fault("the bytes are no state of a unit".to_owned());
+    if size < HEADING {
+        return Err(foreign());
+    }
+    // SAFETY: null is refused; the importer says that more bytes than these are there.
+    let heading = unsafe { array(bytes, HEADING, HEADING) }?;
+    let (mark, length) = heading.split_at(MARK.len());
+    let length = length.iter().rev();
+    let length = length.fold(0u64, |sum, byte| sum << 8 | u64::from(*byte));
+    if mark != MARK || usize::try_from(length) != Ok(size) {
+        return Err(foreign());
+    }
+    // SAFETY: as above; the heading says the same length.
+    let whole = unsafe { array(bytes, size, MOST) }?;
+    let saved = Saved::from_bytes(&whole[HEADING..]).map_err(|error| Fault(error.to_string()))?;
+    put(unit, place, saved)
 }

@@ -142,6 +142,7 @@ impl GeneralizedAlpha {
         to.t = from.t + h;
         self.trial.copy_from_slice(&self.accepted);
         for iteration in 0..MOST_ITERATIONS {
+            // Where the present guess of A⁺ and R⁺ leads, and the forces there.
             self.place(h, from, to);
             to.evaluate(system, record);
             counts.evaluations += 1;
@@ -158,6 +159,7 @@ impl GeneralizedAlpha {
                     Outcome::NoSolution
                 };
             }
+            // What is missing of the balance of forces, over the matrix of the step: the correction of the guess.
             self.imbalance(from, to);
             counts.solves += 1;
             if !system.solve(weights, record, &mut self.correction) {

@@ -1,8 +1,7 @@
 //! Implicit damping: damping taken at the end of the step, stiffness at its beginning or carried as inertia.
 
-use pulp::{Simd, WithSimd};
-
 use crate::finite::Watch;
+use crate::kernel;
 use crate::outcome::Outcome;
 use crate::registers::Registers;
 use crate::state::{Size, Snapshot, State};
@@ -74,8 +73,8 @@ impl ImplicitDamping {
         }
         to.t = from.t + h;
         let registers = Registers::in_use();
-        let change = &mut self.change;
-        registers.dispatch(Right { h, from, change });
+        // h f and h ż of the beginning, and the unknowns in their place.
+        registers.dispatch(right(h, from, &mut self.change));
         let weights = Weights {
             damping: h,
             stiffness: 0.25 * h * h,
@@ -85,77 +84,53 @@ impl ImplicitDamping {
         if !system.solve(weights, record, &mut self.change) {
             return Outcome::NoSolution;
         }
-        let change = &self.change;
-        registers.dispatch(Ahead {
-            h,
-            from,
-            change,
-            to,
-        });
+        registers.dispatch(ahead(h, from, &self.change, to));
+        // Forces at the end: those of the next step, and of what is recorded.
         to.evaluate(system, record);
         counts.evaluations += 1;
         to.trapezoidal(from, h);
-        Outcome::of(registers.dispatch(Finite(to)))
+        Outcome::of(registers.dispatch(finite(to)))
     }
 }
 
-/// The right-hand side of the equations, divided by the masses.
-struct Right<'a> {
-    h: f64,
-    from: &'a State,
-    change: &'a mut [f64],
-}
-
-impl WithSimd for Right<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let (dv, dz) = self.change.split_at_mut(self.from.a.len());
-        for (x, rates) in [(dv, &self.from.a[..]), (dz, self.from.flow())] {
+kernel!(
+    /// The right-hand side of the equations, divided by the masses.
+    fn right<'a, S: Simd>(_simd: S, h: f64, from: &'a State, change: &'a mut [f64]) {
+        let (dv, dz) = change.split_at_mut(from.a.len());
+        for (x, rates) in [(dv, &from.a[..]), (dz, from.flow())] {
             for (x, rate) in x.iter_mut().zip(rates) {
-                *x = self.h * rate;
+                *x = h * rate;
             }
         }
     }
-}
+);
 
-/// v⁺ = v + Δv,   q⁺ = q + h v⁺,   z⁺ = z + Δz
-struct Ahead<'a> {
-    h: f64,
-    from: &'a State,
-    change: &'a [f64],
-    to: &'a mut Snapshot,
-}
-
-impl WithSimd for Ahead<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let before = self.from.q.iter().zip(&self.from.v);
-        let after = self.to.q.iter_mut().zip(&mut self.to.v);
-        let (dv, dz) = self.change.split_at(self.from.q.len());
+kernel!(
+    /// v⁺ = v + Δv,   q⁺ = q + h v⁺,   z⁺ = z + Δz
+    fn ahead<'a, S: Simd>(
+        _simd: S,
+        h: f64,
+        from: &'a State,
+        change: &'a [f64],
+        to: &'a mut Snapshot,
+    ) {
+        let before = from.q.iter().zip(&from.v);
+        let after = to.q.iter_mut().zip(&mut to.v);
+        let (dv, dz) = change.split_at(from.q.len());
         for (((q, v), (q0, v0)), dv) in after.zip(before).zip(dv) {
             *v = dv + v0;
-            *q = q0 + self.h * *v;
+            *q = q0 + h * *v;
         }
-        for ((z, z0), dz) in self.to.z.iter_mut().zip(&self.from.z).zip(dz) {
+        for ((z, z0), dz) in to.z.iter_mut().zip(&from.z).zip(dz) {
             *z = dz + z0;
         }
     }
-}
+);
 
-/// Whether a candidate is finite.
-struct Finite<'a>(&'a Snapshot);
-
-impl WithSimd for Finite<'_> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> bool {
+kernel!(
+    /// Whether a candidate is finite.
+    fn finite<'a, S: Simd>(_simd: S, to: &'a Snapshot) -> bool {
         let mut watch = Watch::default();
-        let to = self.0;
         // Places are as finite as the velocities that led there.
         for part in [&to.v, &to.a, &to.quadratures, &to.z] {
             for value in part {
@@ -164,4 +139,4 @@ impl WithSimd for Finite<'_> {
         }
         watch.all_finite()
     }
-}
+);

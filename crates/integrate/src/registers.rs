@@ -159,6 +159,59 @@ impl Registers {
     }
 }
 
+/// Declares a loop that is compiled for every instruction set, as a function that makes an operation of its arguments.
+///
+/// ```text
+/// kernel!(
+///     /// Twice as much.
+///     fn doubled<'a, S: Simd>(_simd: S, numbers: &'a mut [f64]) { … }
+/// );
+/// registers.dispatch(doubled(&mut numbers));
+/// ```
+///
+/// The loop is generic over the registers S, and over constants before and one type after them. Its first argument is made of the
+/// registers, which stand in no call. Where a kernel calls another loop, [`pulp::Simd::vectorize`] takes the place of
+/// [`dispatch`](Registers::dispatch).
+#[macro_export]
+macro_rules! kernel {
+    (@found) => { () };
+    (@found $found:ty) => { $found };
+    (
+        $(#[$about:meta])*
+        $vis:vis fn $name:ident<
+            $($life:lifetime,)* $(const $count:ident: $number:ty,)* S: Simd $(, $kind:ident: $bound:path)?
+        >(
+            $lanes:ident: $made:ty $(, $(#[$of:meta])* $given:ident: $type:ty)* $(,)?
+        ) $(-> $found:ty)? $body:block
+    ) => {
+        $(#[$about])*
+        #[inline(always)]
+        $vis fn $name<$($life,)* $(const $count: $number,)* $($kind: $bound)?>(
+            $($given: $type),*
+        ) -> impl pulp::WithSimd<Output = $crate::kernel!(@found $($found)?)> {
+            struct Loop<$($life,)* $(const $count: $number,)* $($kind: $bound)?> {
+                $($(#[$of])* $given: $type,)*
+            }
+
+            impl<$($life,)* $(const $count: $number,)* $($kind: $bound)?> pulp::WithSimd
+                for Loop<$($life,)* $($count,)* $($kind)?>
+            {
+                type Output = $crate::kernel!(@found $($found)?);
+
+                // A loop that is not inlined here is compiled for the oldest processor.
+                #[inline(always)]
+                fn with_simd<S: pulp::Simd>(self, simd: S) -> Self::Output {
+                    let Self { $($given),* } = self;
+                    let $lanes = <$made>::from(simd);
+                    $body
+                }
+            }
+
+            Loop::<$($life,)* $($count,)* $($kind)?> { $($given),* }
+        }
+    };
+}
+
 fn chosen() -> &'static Result<Registers, InstructionSetError> {
     static CHOSEN: OnceLock<Result<Registers, InstructionSetError>> = OnceLock::new();
     CHOSEN.get_or_init(|| {

@@ -86,6 +86,7 @@ impl RungeKutta {
         let (z, flow) = (&from.z, from.flow());
         combine(h, b, z, flow, stages, |k| &k.rates[first..], &mut to.z);
         to.t = from.t + h;
+        // The last stage stands at the end: its derivatives are those that the next step begins with.
         to.evaluate(system, record);
         let mut watch = Watch::default();
         for part in [&to.q, &to.v, &to.a, &to.quadratures, &to.z] {

@@ -141,6 +141,7 @@ impl<S: SecondOrderSystem> Stepper<S> {
             Pace::Controlled(controller) => controller.max_step,
         };
         let least = (4.0 * f64::EPSILON * from.abs()).max(LEAST_SHARE * longest);
+        // As long as the method wants, but not beyond the next event.
         let (mut h, mut rejections, mut retries, mut cut_short) =
             (nominal.min(left), 0, 0, left < nominal);
         let error = loop {
@@ -150,6 +151,7 @@ impl<S: SecondOrderSystem> Stepper<S> {
             }
             // The record of the accepted state survives until the first candidate.
             let fresh = rejections == 0;
+            // A candidate whose equations were not solved is tried again with half the step.
             let Some(error) = self.attempt(system, state, h, fresh)? else {
                 if h <= floor * (1.0 + 1e-9) {
                     return Err(IntegrationError::StepUnderflow { t: from, step: h });
@@ -159,6 +161,7 @@ impl<S: SecondOrderSystem> Stepper<S> {
                 cut_short = true;
                 continue;
             };
+            // One whose error is too large with what the control proposes.
             if error > 1.0 {
                 rejections += 1;
                 self.statistics.error_rejections += 1;
@@ -167,6 +170,7 @@ impl<S: SecondOrderSystem> Stepper<S> {
                 }
                 continue;
             }
+            // One that the system refuses, as a contact that begins too deep, with what that asks for.
             match system.inspect(h, &self.record) {
                 Verdict::Retry { at_most } if h > floor * (1.0 + 1e-9) => {
                     h = shortened(h, at_most, retries, floor);
@@ -287,6 +291,7 @@ impl<S: SecondOrderSystem> Stepper<S> {
         if state.t + slack(state.t) >= self.event {
             self.look_ahead(system, state);
         }
+        // What was committed may be stiffer than before: a fixed step that is no longer stable is shortened.
         if let Pace::Fixed(fixed) = &mut self.pace {
             let limit = self.method.longest_step(self.method.time_scale(system));
             let Some(shortened) = fixed.adapt(limit) else {
@@ -309,6 +314,7 @@ impl<S: SecondOrderSystem> Stepper<S> {
         system.evaluate(at, &mut state.a, &mut state.rates, &mut self.record);
         self.statistics.evaluations += 1;
         let parts = [&state.q, &state.v, &state.a, &state.rates, &state.z];
+        // A state that is not finite is told at once, with the first number that is not.
         let mut watch = Watch::default();
         for part in parts {
             watch.see_all(part);

@@ -13,6 +13,14 @@ pub struct Moment<'a> {
     pub z: &'a [f64],
 }
 
+impl<'a> Moment<'a> {
+    /// A moment of a system without first-order states, or of which nobody asks for them.
+    #[inline]
+    pub fn stateless(t: f64, q: &'a [f64], v: &'a [f64]) -> Self {
+        Self { t, q, v, z: &[] }
+    }
+}
+
 /// How the velocities of a moment were predicted, for forces that look ahead of them.
 ///
 /// ```text

@@ -1,8 +1,7 @@
 //! Velocity Verlet with velocities predicted for the force evaluation.
 
-use pulp::{Simd, WithSimd};
-
 use crate::finite::Watch;
+use crate::kernel;
 use crate::registers::Registers;
 use crate::state::{Size, Snapshot, State};
 use crate::{Moment, Prediction, SecondOrderSystem};
@@ -55,12 +54,9 @@ impl Verlet {
         to.t = from.t + h;
         // What is predicted stands where the velocities will: every array less leaves the others nearer to the processor.
         // Infinity and NaN get into the velocities from wherever they arise: watching those is enough.
-        self.registers.dispatch(Drift {
-            h,
-            from,
-            q: &mut to.q,
-            predicted: &mut to.v,
-        });
+        self.registers
+            .dispatch(drift(h, from, &mut to.q, &mut to.v));
+        // States of first order are predicted as velocities are.
         let flow = from.flow();
         for ((predicted, z), flow) in self.states.iter_mut().zip(&from.z).zip(flow) {
             // z* = z + h ż
@@ -72,18 +68,14 @@ impl Verlet {
             v: &to.v,
             z: &self.states,
         };
+        // The system may take damping at the end of the step: for that it is told what velocities were predicted from.
         let prediction = Prediction {
             half_step: 0.5 * h,
             a: &from.a,
             flow,
         };
         system.evaluate_predicted(end, prediction, &mut to.a, &mut to.rates, record);
-        let mut watch = self.registers.dispatch(Kick {
-            h,
-            from,
-            a: &to.a,
-            v: &mut to.v,
-        });
+        let mut watch = self.registers.dispatch(kick(h, from, &to.a, &mut to.v));
         // The trapezoidal rule: y⁺ = y + ½ h (r + r⁺)
         for (i, y) in to.quadratures.iter_mut().enumerate() {
             *y = from.quadratures[i] + 0.5 * h * (from.rates[i] + to.rates[i]);
@@ -99,26 +91,21 @@ impl Verlet {
     }
 }
 
-/// Positions and predicted velocities.
-struct Drift<'a> {
-    h: f64,
-    from: &'a State,
-    q: &'a mut [f64],
-    predicted: &'a mut [f64],
-}
-
-impl WithSimd for Drift<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self { h, from, .. } = self;
-        let n = self.q.len();
+kernel!(
+    /// Positions and predicted velocities.
+    fn drift<'a, S: Simd>(
+        simd: S,
+        h: f64,
+        from: &'a State,
+        q: &'a mut [f64],
+        predicted: &'a mut [f64],
+    ) {
+        let n = q.len();
         let (q0, q1) = S::as_simd_f64s(&from.q[..n]);
         let (v0, v1) = S::as_simd_f64s(&from.v[..n]);
         let (a0, a1) = S::as_simd_f64s(&from.a[..n]);
-        let (q, q_rest) = S::as_mut_simd_f64s(self.q);
-        let (p, p_rest) = S::as_mut_simd_f64s(&mut self.predicted[..n]);
+        let (q, q_rest) = S::as_mut_simd_f64s(q);
+        let (p, p_rest) = S::as_mut_simd_f64s(&mut predicted[..n]);
         let [step, half] = [h, 0.5 * h].map(|x| simd.splat_f64s(x));
         // Not fused: a processor without the instruction would call a function for it.
         let plus = |a, x, y| simd.add_f64s(simd.mul_f64s(a, x), y);
@@ -132,27 +119,22 @@ impl WithSimd for Drift<'_> {
             p_rest[i] = v1[i] + h * a1[i];
         }
     }
-}
+);
 
-/// Velocities. Infinity and NaN show in the sum of 0 × everything.
-struct Kick<'a> {
-    h: f64,
-    from: &'a State,
-    a: &'a [f64],
-    v: &'a mut [f64],
-}
-
-impl WithSimd for Kick<'_> {
-    type Output = Watch;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Watch {
-        let Self { h, from, .. } = self;
-        let n = self.v.len();
+kernel!(
+    /// Velocities. Infinity and NaN show in the sum of 0 × everything.
+    fn kick<'a, S: Simd>(
+        simd: S,
+        h: f64,
+        from: &'a State,
+        a: &'a [f64],
+        v: &'a mut [f64],
+    ) -> Watch {
+        let n = v.len();
         let (v0, v1) = S::as_simd_f64s(&from.v[..n]);
         let (a0, a1) = S::as_simd_f64s(&from.a[..n]);
-        let (b0, b1) = S::as_simd_f64s(&self.a[..n]);
-        let (v, v_rest) = S::as_mut_simd_f64s(self.v);
+        let (b0, b1) = S::as_simd_f64s(&a[..n]);
+        let (v, v_rest) = S::as_mut_simd_f64s(v);
         let [zero, half] = [0.0, 0.5 * h].map(|x| simd.splat_f64s(x));
         let plus = |a, x, y| simd.add_f64s(simd.mul_f64s(a, x), y);
         let mut seen = zero;
@@ -169,4 +151,4 @@ impl WithSimd for Kick<'_> {
         }
         watch
     }
-}
+);

@@ -1,4 +1,36 @@
 //! From a valid drive to one that is ready to move: lay the chain, settle it, set it going.
+//!
+//! # Pretension
+//!
+//! A closed chain is to carry the pretension T₀ in every link, before gravity and load. Where links alone stretch, geometry says how long they
+//! are for that. Where teeth or joints yield instead it does not, and the length is searched for. Three places have to do with it:
+//!
+//! ```text
+//! Drive::assemble ── each group ──┬─ all links stretch ─► assemble_as_is
+//!                                 └─ rigid links ───────► assemble_hard (2) ─► assemble_as_is, up to 20 times
+//!
+//! assemble_as_is: lay::lay (1) ─► relax::settle ─► put_in_place ── pins with play ─► settle::settle ─► tighten (3)
+//! ```
+//!
+//! 1. `lay` shortens all links by the strain of T₀, or moves the adjusted body on until the closing has that strain:
+//!
+//!    ```text
+//!    Σ ℓ₀ = n p (1 + ε) − T₀ Σ 1/k     ε: strain that closes links of the pitch around the polygons
+//!    ```
+//!
+//!    ε and the travel are those of the phase at the start, or means over 8 phases of a tooth. The travel is searched for by
+//!    `close_by_motion`. `relax::settle` finds the equilibrium of the chain with its masses lumped at the rollers, first under the
+//!    pretension alone, in at most 300 iterations of Newton's method, and then under gravity and load. It keeps the lengths: what teeth yield
+//!    is missing of T₀.
+//! 2. `assemble_hard`: rigid links owe their tension to the teeth alone, which yield by another law and not all alike. They are laid as links a
+//!    thousand times as stiff as teeth. The secant method finds the tension to be given to `lay` for which links carry T₀ in the mean
+//!    at the end of the first stage of `relax::settle`, to 1 ‰: at most 20 assemblies.
+//! 3. `settle::tighten`: pins with play do not lie where the lumped chain has its joints, but where they are pressed to in their bushes.
+//!    Without gravity and load all links are made longer or shorter until they carry T₀ in the mean, to 1 ‰: in growing strides while the
+//!    chain is slack, then by the secant in a bracket, in at most 60 relaxations of at most 6000 iterations. A chain that carries T₀ in the mean over a
+//!    tooth keeps the length with which it was laid, and only its joints find their places: one relaxation. Two kinds of chain are to carry what the
+//!    lumped one carried in the first stage of `relax::settle`, not T₀: one with free rollers, if T₀ is that in the mean over a tooth, and
+//!    one whose frame has grown since it was fitted. Gravity and load follow.
 
 mod apart;
 mod beginning;
@@ -197,6 +229,26 @@ fn carried(statics: &[Statics], links: std::ops::Range<usize>) -> Option<f64> {
     Some(tensions.iter().sum::<f64>() / tensions.len() as f64)
 }
 
+/// What a chain whose pins have play is to carry.
+fn tightening(parts: &Parts, index: usize, statics: &[Statics]) -> Tightening {
+    let placed = &parts.chains[index];
+    let (layout, model) = (&placed.layout, &placed.chain.model);
+    let at = layout.pretension_at();
+    // Bushes on smaller circles have the pitch of a worn chain: free rollers ride up the flanks, and a length does not tell how
+    // tight that is. What a frame that has grown adds to the pretension is known from the lumped chain alone.
+    let free = model.free_roller().is_some() && at == PretensionAt::MeanPhase;
+    let as_lumped = carried(statics, hard::links_of(&parts.chains, index))
+        .filter(|_| free || layout.growth() != 0.0)
+        .map(|tension| (tension, PretensionAt::Phase));
+    let (pretension, at) = as_lumped.unwrap_or((layout.pretension(), at));
+    Tightening {
+        chain: index,
+        pretension,
+        stiffness: placed.chain.stiffness[0],
+        at,
+    }
+}
+
 impl Drive {
     /// Lays the chain, finds the static state where asked, and sets everything going at the
     /// speed of the first driven sprocket.
@@ -296,31 +348,10 @@ impl Drive {
         let mut still = vec![0.0; q.len()];
         let z = system.settled_states(q);
         system.start(self.begin, q, &mut still, &z);
-        let loose = |index: &usize| system.chains[*index].chain.has_play();
-        let tightenings: Vec<Tightening> = parts
-            .chains
-            .iter()
-            .enumerate()
-            .filter(|(index, _)| loose(index))
-            .map(|(index, placed)| {
-                let of_layout = (placed.layout.pretension(), placed.layout.pretension_at());
-                // Bushes on smaller circles have the pitch of a worn chain: free rollers ride up the flanks, and a length does not tell how
-                // tight that is. They carry what the lumped ones do at this phase.
-                let free = placed.chain.model.free_roller().is_some()
-                    && of_layout.1 == PretensionAt::MeanPhase;
-                // What a frame that has grown adds to the pretension is known from the lumped ones alone.
-                let as_lumped = carried(statics, hard::links_of(&parts.chains, index))
-                    .filter(|_| free || placed.layout.growth() != 0.0)
-                    .map(|tension| (tension, PretensionAt::Phase));
-                let (pretension, at) = as_lumped.unwrap_or(of_layout);
-                Tightening {
-                    chain: index,
-                    pretension,
-                    stiffness: placed.chain.stiffness[0],
-                    at,
-                }
-            })
-            .collect();
+        let chains = 0..parts.chains.len();
+        let loose = chains.filter(|index| system.chains[*index].chain.has_play());
+        let tightenings = loose.map(|index| tightening(parts, index, statics));
+        let tightenings: Vec<Tightening> = tightenings.collect();
         if self.settle && !tightenings.is_empty() {
             if !system.can_solve() {
                 return Err(AssemblyError::Layout {

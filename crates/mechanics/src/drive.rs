@@ -234,28 +234,27 @@ pub enum Layout {
 }
 
 impl Layout {
+    /// How a closed chain is fitted; none of a strand.
+    fn fit(&self) -> Option<&Fit> {
+        match self {
+            Self::Route { fit, .. } => Some(fit),
+            Self::Points { .. } => None,
+        }
+    }
+
     /// Where it carries its pretension; a strand, where it lies.
     pub(crate) fn pretension_at(&self) -> PretensionAt {
-        match self {
-            Self::Route { fit, .. } => fit.at,
-            Self::Points { .. } => PretensionAt::Phase,
-        }
+        self.fit().map_or(PretensionAt::Phase, |fit| fit.at)
     }
 
     /// Growth of the frame after the chain was fitted \[–\].
     pub(crate) fn growth(&self) -> f64 {
-        match self {
-            Self::Route { fit, .. } => fit.growth,
-            Self::Points { .. } => 0.0,
-        }
+        self.fit().map_or(0.0, |fit| fit.growth)
     }
 
     /// Tension that the chain is laid with \[N\].
     pub(crate) fn pretension(&self) -> f64 {
-        match self {
-            Self::Route { fit, .. } => fit.pretension,
-            Self::Points { .. } => 0.0,
-        }
+        self.fit().map_or(0.0, |fit| fit.pretension)
     }
 }
 

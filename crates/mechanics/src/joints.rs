@@ -16,6 +16,6 @@ pub(crate) use element::{Element, Partner, Row, cross, partner_row, turned};
 pub(crate) use memory::{JointFindings, JointMemory};
 pub(crate) use mount::{Mount, rail_mount, wheel_mount};
 pub(crate) use pin::{add_joint, touch};
-pub(crate) use pins::{Contacts, Pairs, Pins};
+pub(crate) use pins::{Pairs, Pins, contacts};
 pub(crate) use resistance::{JointLosses, Joints, Resistance, Stick, Turns, remember};
 pub(crate) use side::{JointMates, Mate, Part, Sides, Tip};

@@ -68,6 +68,13 @@ pub(crate) struct Mask<S: Simd> {
     m: S::m64s,
 }
 
+impl<S: Simd> From<S> for Wide<S> {
+    #[inline(always)]
+    fn from(simd: S) -> Self {
+        Self(simd)
+    }
+}
+
 impl<S: Simd> Wide<S> {
     /// Number of lanes of this processor; divides [`LANES`].
     pub(crate) const COUNT: usize = S::F64_LANES;
@@ -424,7 +431,7 @@ impl<S: Simd> AddAssign for Lane<S> {
     reason = "what is only moved about stays what it was"
 )]
 mod tests {
-    use chaindrive_integrate::{InstructionSet, Registers};
+    use chaindrive_integrate::{InstructionSet, Registers, kernel};
     use chaindrive_validation::run_again;
     use pulp::Scalar128b;
 
@@ -490,23 +497,18 @@ mod tests {
         assert_eq!(shifted, before);
     }
 
-    struct Check;
-
-    impl WithSimd for Check {
-        type Output = ();
-
-        #[inline(always)]
-        fn with_simd<S: Simd>(self, simd: S) {
+    kernel!(
+        fn checked<S: Simd>(simd: S) {
             check(simd);
         }
-    }
+    );
 
     #[test]
     fn lanes_of_any_width_compute_alike() {
         check(pulp::Scalar);
         check(Scalar128b);
         check(pulp::Scalar512b);
-        Registers::in_use().dispatch(Check);
+        Registers::in_use().dispatch(checked());
     }
 
     /// All tests of this program hold on the next narrower set of registers.

@@ -98,6 +98,18 @@ impl System {
         own.or_else(|| wheel().map(|wheel| wheel.shaft))
     }
 
+    /// The sprocket of a name.
+    pub fn sprocket_named(&self, name: &str) -> Option<usize> {
+        let mut wheels = self.bodies.wheels.iter();
+        wheels.position(|wheel| wheel.name == name)
+    }
+
+    /// The tensioner of a name.
+    pub fn tensioner_named(&self, name: &str) -> Option<usize> {
+        let mut slides = self.bodies.slides.iter();
+        slides.position(|slide| slide.name == name)
+    }
+
     /// Names of the couplings.
     pub fn coupling_names(&self) -> Vec<String> {
         let couplings = self.bodies.couplings.iter();

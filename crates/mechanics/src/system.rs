@@ -20,6 +20,7 @@ use chaindrive_integrate::{
 };
 use serde::{Deserialize, Serialize};
 
+use crate::AssemblyError;
 use crate::applied;
 use crate::bodies::Bodies;
 use crate::chains::{self, Chain, LaidAs};
@@ -164,9 +165,20 @@ impl System {
         self.chains.iter().any(|member| member.chain.strands() > 0)
     }
 
-    /// Whether something pushes a body onto a chain.
-    pub(crate) fn is_tensioned(&self) -> bool {
-        !self.bodies.slides.is_empty()
+    /// The error of statics that end without an equilibrium.
+    pub(crate) fn no_equilibrium(
+        &self,
+        stage: &'static str,
+        residual: f64,
+        iterations: usize,
+    ) -> AssemblyError {
+        AssemblyError::NoEquilibrium {
+            stage,
+            residual,
+            iterations,
+            tensioned: !self.bodies.slides.is_empty(),
+            pull: None,
+        }
     }
 
     /// Degrees of freedom that move: those of held rollers do not count.
@@ -269,12 +281,7 @@ impl System {
         [q, v]: [&mut Vec<f64>; 2],
     ) -> bool {
         let member = &self.chains[index];
-        let at = Moment {
-            t: self.begin,
-            q,
-            v,
-            z: &[],
-        };
+        let at = Moment::stateless(self.begin, q, v);
         let entries = member.entries.clone();
         let bodies = self.group_bodies(self.group_of(index));
         let placed = member.chain.put_in_place(entries, bodies, laid, at);

@@ -83,7 +83,7 @@ impl Simulation {
         Ok(reached)
     }
 
-    /// Moves on to a time \[s\], of which nothing is read but what [views](super::View) ask for; `stop` is asked every 50 ms.
+    /// Advances to a time \[s\]; only [views](super::View) are read. `stop` is asked every 50 ms.
     ///
     /// # Errors
     /// As [`advance_to`](Self::advance_to), and [`SimulationError::Interrupted`].
@@ -251,45 +251,47 @@ impl Control {
     fn input(&self, assembled: &Assembled) -> Result<Input, SimulationError> {
         let system = &assembled.system;
         let (_, name) = self.target();
-        let tunable = &assembled.drive.parts().tunable;
-        let known = match self {
-            Self::Force(_) => system.tensioner_names(),
-            Self::Torque(_) | Self::Speed(_) | Self::Angle(_) => {
-                let mut known = system.sprocket_names();
-                known.extend(system.shaft_names());
-                known
-            }
-            Self::CentreX(_) | Self::CentreY(_) => system.sprocket_names(),
-            Self::Parameter(_) => tunable.iter().map(|it| it.place.clone()).collect(),
+        let shaft = || system.shaft_named(name);
+        let centre = |axis| {
+            let sprocket = system.sprocket_named(name)?;
+            Some(Input::Centre { sprocket, axis })
         };
-        let Some(index) = known.iter().position(|known| known == name) else {
-            let known = match (known.len(), self) {
-                (0, Self::Parameter(_)) => {
-                    "the scene lists none; name it under `tunable`".to_owned()
-                }
-                (0, _) => "there is none in this drive".to_owned(),
-                _ => format!("there is none of this name; there are {}", known.join(", ")),
-            };
-            return Err(self.refused(known));
-        };
-        let shaft = || system.shaft_named(name).unwrap_or(index);
-        let centre = |axis| Input::Centre {
-            sprocket: index,
-            axis,
-        };
+        let mut tunable = assembled.drive.parts().tunable.iter();
         let input = match self {
-            Self::Force(_) => Input::Force { tensioner: index },
-            Self::Torque(_) => Input::Torque { shaft: shaft() },
-            Self::Speed(_) => Input::Speed { shaft: shaft() },
-            Self::Angle(_) => Input::Angle { shaft: shaft() },
+            Self::Force(_) => {
+                (system.tensioner_named(name)).map(|tensioner| Input::Force { tensioner })
+            }
+            Self::Torque(_) => shaft().map(|shaft| Input::Torque { shaft }),
+            Self::Speed(_) => shaft().map(|shaft| Input::Speed { shaft }),
+            Self::Angle(_) => shaft().map(|shaft| Input::Angle { shaft }),
             Self::CentreX(_) => centre(0),
             Self::CentreY(_) => centre(1),
-            Self::Parameter(_) => tunable[index].input,
+            Self::Parameter(_) => tunable.find(|it| it.place == name).map(|it| it.input),
         };
+        let input = input.ok_or_else(|| self.unknown(assembled))?;
         match system.refuses(input) {
             Some(reason) => Err(self.refused(reason.to_owned())),
             None => Ok(input),
         }
+    }
+
+    /// Refuses a name that the drive does not have, and lists those that it has.
+    fn unknown(&self, assembled: &Assembled) -> SimulationError {
+        let system = &assembled.system;
+        let tunable = assembled.drive.parts().tunable.iter();
+        let known = match self {
+            Self::Force(_) => system.tensioner_names(),
+            Self::Torque(_) | Self::Speed(_) | Self::Angle(_) => {
+                [system.sprocket_names(), system.shaft_names()].concat()
+            }
+            Self::CentreX(_) | Self::CentreY(_) => system.sprocket_names(),
+            Self::Parameter(_) => tunable.map(|it| it.place.clone()).collect(),
+        };
+        self.refused(match (known.len(), self) {
+            (0, Self::Parameter(_)) => "the scene lists none; name it under `tunable`".to_owned(),
+            (0, _) => "there is none in this drive".to_owned(),
+            _ => format!("there is none of this name; there are {}", known.join(", ")),
+        })
     }
 
     /// Kind and name of its target.

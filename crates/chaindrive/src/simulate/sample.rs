@@ -53,7 +53,7 @@ impl Simulation {
         Ok((sample, start))
     }
 
-    /// The simulation as one that began later, where the record of `run` begins: it stands behind samples of that.
+    /// Resets the clock so that the record of `run` begins at t = 0; samples that were taken since then are kept.
     pub(crate) fn begun_at(
         self,
         start: Assembled,

@@ -2,22 +2,11 @@
 
 use std::ffi::{c_char, c_int, c_uint, c_void};
 
-use crate::calls::refuse;
-use crate::units::Handle;
+use crate::versions::functions;
 
 type Refs = *const c_uint;
 
-macro_rules! absent {
-    ($($reason:literal: { $($name:ident($($type:ty),*);)* })*) => {$($(
-        #[doc = $reason]
-        #[unsafe(no_mangle)]
-        pub extern "C" fn $name(instance: Handle $(, _: $type)*) -> c_int {
-            refuse(instance, stringify!($name), $reason)
-        }
-    )*)*};
-}
-
-absent! {
+functions! { absent:
     "the unit has no variables of this type": {
         fmi2GetBoolean(Refs, usize, *mut c_int);
         fmi2SetBoolean(Refs, usize, *const c_int);

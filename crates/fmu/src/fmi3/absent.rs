@@ -2,24 +2,15 @@
 
 use std::ffi::{c_char, c_int, c_void};
 
-use crate::calls::{make_none, named, refuse};
+use crate::calls::{make_none, named};
 use crate::logger::{Listener, Logger, Logger3};
 use crate::pointers::text;
 use crate::units::Handle;
+use crate::versions::functions;
 
 type Refs = *const u32;
 
-macro_rules! absent {
-    ($($reason:literal: { $($name:ident($($type:ty),*);)* })*) => {$($(
-        #[doc = $reason]
-        #[unsafe(no_mangle)]
-        pub extern "C" fn $name(instance: Handle $(, _: $type)*) -> c_int {
-            refuse(instance, stringify!($name), $reason)
-        }
-    )*)*};
-}
-
-absent! {
+functions! { absent:
     "the unit has no variables of this type": {
         fmi3GetFloat32(Refs, usize, *mut f32, usize);
         fmi3GetInt8(Refs, usize, *mut i8, usize);
@@ -89,39 +80,30 @@ absent! {
     }
 }
 
-/// Makes no instance: the unit has co-simulation only.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3InstantiateModelExchange(
-    instance_name: *const c_char,
-    _instantiation_token: *const c_char,
-    _resource_path: *const c_char,
-    _visible: u8,
-    _logging_on: u8,
-    environment: Handle,
-    log_message: Option<Logger3>,
-) -> Handle {
-    // SAFETY: the caller promises a text, or null.
-    let name = named(unsafe { text(instance_name) });
-    let logger = Logger::new(Listener::Three(log_message), environment, name, false);
-    make_none("fmi3InstantiateModelExchange", &logger)
+/// Declares functions that make no instance.
+macro_rules! instances {
+    ($($name:ident($($unused:ty),*);)*) => {$(
+        /// Makes no instance: the unit has co-simulation only.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $name(
+            instance_name: *const c_char,
+            _instantiation_token: *const c_char,
+            _resource_path: *const c_char,
+            _visible: u8,
+            _logging_on: u8,
+            environment: Handle,
+            log_message: Option<Logger3>
+            $(, _: $unused)*
+        ) -> Handle {
+            // SAFETY: the caller promises a text, or null.
+            let name = named(unsafe { text(instance_name) });
+            let logger = Logger::new(Listener::Three(log_message), environment, name, false);
+            make_none(stringify!($name), &logger)
+        }
+    )*};
 }
 
-/// Makes no instance: the unit has co-simulation only.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
-    instance_name: *const c_char,
-    _instantiation_token: *const c_char,
-    _resource_path: *const c_char,
-    _visible: u8,
-    _logging_on: u8,
-    environment: Handle,
-    log_message: Option<Logger3>,
-    _clock_update: *mut c_void,
-    _lock_preemption: *mut c_void,
-    _unlock_preemption: *mut c_void,
-) -> Handle {
-    // SAFETY: the caller promises a text, or null.
-    let name = named(unsafe { text(instance_name) });
-    let logger = Logger::new(Listener::Three(log_message), environment, name, false);
-    make_none("fmi3InstantiateScheduledExecution", &logger)
+instances! {
+    fmi3InstantiateModelExchange();
+    fmi3InstantiateScheduledExecution(*mut c_void, *mut c_void, *mut c_void);
 }

@@ -150,12 +150,7 @@ impl FreeTrain {
     fn torques(&self, system: &System, q: &[f64]) -> Vec<f64> {
         let bodies = &system.bodies;
         let still = vec![0.0; q.len()];
-        let at = Moment {
-            t: system.begin,
-            q,
-            v: &still,
-            z: &[],
-        };
+        let at = Moment::stateless(system.begin, q, &still);
         let torque = |(index, c): &(usize, f64)| {
             let shaft = &bodies.shafts[*index];
             let mut turning = shaft.turn.kinematics(at.t, at.q, at.v);

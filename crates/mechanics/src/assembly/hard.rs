@@ -1,4 +1,4 @@
-//! Chains whose links do not stretch: laid with links that hardly do.
+//! Chains whose links do not stretch: laid with links that hardly do. The second search for the pretension: see [`assembly`](super).
 
 use super::carried;
 use crate::drive::{Layout, Parts, PlacedChain, PretensionAt};
@@ -46,14 +46,12 @@ impl Drive {
             }
             let hard = if asked > 0.0 { HARD } else { HANGING };
             placed.chain.stiffness.fill(hard * teeth);
-            if let Layout::Route { fit, phase, .. } = &mut placed.layout
-                && fit.at == PretensionAt::MeanPhase
-            {
+            if let Layout::Route { fit, phase, .. } = &mut placed.layout {
                 // The tension is found at one phase; which one must not depend on where the run begins.
-                fit.at = PretensionAt::Phase;
-                *phase = 0.5;
-            }
-            if let Layout::Route { fit, .. } = &mut placed.layout {
+                if fit.at == PretensionAt::MeanPhase {
+                    fit.at = PretensionAt::Phase;
+                    *phase = 0.5;
+                }
                 // What it carries before the frame grows is looked for.
                 fit.growth = 0.0;
             }

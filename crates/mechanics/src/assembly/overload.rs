@@ -94,12 +94,7 @@ fn overload(parts: &Parts, pulls: &[(usize, Pull)]) -> Option<(f64, AssemblyErro
 fn torques(system: &System, q: &[f64], given: Option<&Torques>) -> Vec<f64> {
     let bodies = &system.bodies;
     let still = vec![0.0; q.len()];
-    let at = Moment {
-        t: system.begin,
-        q,
-        v: &still,
-        z: &[],
-    };
+    let at = Moment::stateless(system.begin, q, &still);
     let shafts = bodies.shafts.iter().enumerate();
     let on = shafts.map(|(index, shaft)| {
         let turning = shaft.turn.kinematics(at.t, at.q, at.v);

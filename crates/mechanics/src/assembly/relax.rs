@@ -67,6 +67,7 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
         unknowns: &unknowns,
         factored: None,
     };
+    // A chain that pulls as it was laid finds its place under that alone; where Newton's method does not, downhill.
     if taut {
         let mut found = newton.solve(q, at, 300);
         if found.residual >= ACCEPTED {
@@ -78,6 +79,8 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
         ("gravity", system.bodies.gravity != Vector::zeros()),
         ("load", has_load(system)),
     ];
+    // Gravity and load come on in shares, each from the equilibrium of the one before: shares grow while that works, and
+    // shrink where it does not.
     for (stage, present) in stages {
         let only = stage == "load" && statics.is_empty();
         if !(present || only) {
@@ -129,7 +132,7 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
 /// Whether a chain pulls as it was laid.
 fn is_taut(system: &System, q: &[f64]) -> bool {
     let still = vec![0.0; q.len()];
-    let at = at_rest(system.begin, q, &still);
+    let at = Moment::stateless(system.begin, q, &still);
     let mut record = system.new_record();
     let mut rates = vec![0.0; system.quadratures() + system.states()];
     let z = system.settled_states(q);
@@ -263,13 +266,12 @@ impl Newton<'_> {
         statics: &mut Vec<Statics>,
     ) -> Result<Vec<f64>, AssemblyError> {
         if found.residual >= ACCEPTED || found.residual.is_nan() {
-            return Err(AssemblyError::NoEquilibrium {
-                stage,
-                residual: found.residual,
-                iterations: found.iterations,
-                tensioned: self.system.is_tensioned(),
-                pull: None,
-            });
+            let Found {
+                residual,
+                iterations,
+                ..
+            } = found;
+            return Err(self.system.no_equilibrium(stage, residual, iterations));
         }
         statics.push(Statics {
             stage,
@@ -295,6 +297,7 @@ impl Newton<'_> {
         let mut best = (residual, q.clone());
         let mut iterations = 0;
         while iterations < most && residual > CONVERGED {
+            // The step of Newton's method, cut where a roller would go too far.
             let Some(step) = self.step(&balance, &mut shift, stiffness) else {
                 break;
             };
@@ -305,6 +308,7 @@ impl Newton<'_> {
             if !now.is_finite() {
                 break;
             }
+            // The shift keeps the matrix definite: less of it as the iteration goes well.
             shift = if now < 3.0 * residual {
                 (shift / 3.0).max(1e-14 * stiffness)
             } else {
@@ -386,6 +390,7 @@ impl Newton<'_> {
         let n = self.unknowns.count;
         while *shift < 1e3 * stiffness {
             let mut matrix = CooMatrix::new(n, n);
+            // The Hessian, and the shift in the units of each row.
             for &(i, j, value) in &balance.entries {
                 matrix.push(i, j, value);
             }
@@ -433,7 +438,9 @@ impl Newton<'_> {
         for shaft in &bodies.shafts {
             if let Some((dof, ratio)) = shaft.turn.turned_by() {
                 let kinematics = shaft.turn.kinematics(begin, q, &still);
-                let of = |torques| bodies.torque(torques, kinematics, at_rest(begin, q, &still));
+                let of = |torques| {
+                    bodies.torque(torques, kinematics, Moment::stateless(begin, q, &still))
+                };
                 let torque = of(&shaft.drive) + of(&shaft.load);
                 sum.force(dof, -load.torque * (ratio * torque));
             }
@@ -449,7 +456,7 @@ impl Newton<'_> {
             }
         }
         for coupling in &bodies.couplings {
-            let [twist, _] = bodies.twist(coupling, at_rest(begin, q, &still));
+            let [twist, _] = bodies.twist(coupling, Moment::stateless(begin, q, &still));
             for (entry, share) in bodies.twisted_by(coupling) {
                 sum.force(entry, coupling.stiffness * twist * share);
                 for (other, other_share) in bodies.twisted_by(coupling) {
@@ -487,15 +494,5 @@ impl Newton<'_> {
                 }
             }
         }
-    }
-}
-
-/// A moment at rest.
-fn at_rest<'a>(t: f64, q: &'a [f64], still: &'a [f64]) -> Moment<'a> {
-    Moment {
-        t,
-        q,
-        v: still,
-        z: &[],
     }
 }

@@ -149,12 +149,7 @@ fn along_route(
     q: &[f64],
     v: &[f64],
 ) -> Vec<Vector> {
-    let at = Moment {
-        t: system.begin,
-        q,
-        v,
-        z: &[],
-    };
+    let at = Moment::stateless(system.begin, q, v);
     let bodies = &system.bodies;
     let mut seats: Vec<Option<usize>> = vec![None; places.len()];
     for on in &member.contacts.teeth {

@@ -7,6 +7,8 @@
 //! Small k follows the motion of the bodies, large k is Newton's method. Joints that are open at
 //! first have no stiffness, and the masses carry the iteration until they close.
 //!
+//! [`tighten`] is the third search for the pretension: see [`assembly`](super).
+//!
 //! # Source
 //! C. T. Kelley and D. E. Keyes, *SIAM J. Numer. Anal.* **35**, 1998, 508–523.
 
@@ -24,6 +26,9 @@ use crate::{AssemblyError, Motion};
 const CONVERGED: f64 = 1e-7;
 /// And what is accepted where the iteration ends without getting there.
 const ACCEPTED: f64 = 1e-3;
+/// Relative error of the pretension that is left, and relaxations after which the search for it is given up.
+const MET: f64 = 1e-3;
+const MOST_LENGTHS: usize = 60;
 /// Iterations after which an accepted state is taken as it is, counted from that state where it is found later.
 const MOST: usize = 600;
 /// Iterations after which none is to be expected: ten times as many (assumed). Chains with play under load walk around their
@@ -56,6 +61,7 @@ pub(super) fn settle(
     q: &mut [f64],
     tightenings: &[Tightening],
 ) -> Result<Balance, AssemblyError> {
+    // Pretension first, chain by chain; then gravity and load on all of them.
     for tightening in tightenings.iter().filter(|t| t.pretension > 0.0) {
         tighten(system, q, *tightening)?;
     }
@@ -72,13 +78,7 @@ fn accept(
     if balance.residual < ACCEPTED {
         return Ok(balance);
     }
-    Err(AssemblyError::NoEquilibrium {
-        stage,
-        residual: balance.residual,
-        iterations: balance.iterations,
-        tensioned: system.is_tensioned(),
-        pull: None,
-    })
+    Err(system.no_equilibrium(stage, balance.residual, balance.iterations))
 }
 
 /// Lets joints find their places without gravity and load, and makes all links of a chain longer or shorter until it carries T₀
@@ -102,14 +102,15 @@ fn tighten(
     // Too long and too short, with what is missing of the tension there.
     let mut bracket: [Option<(f64, f64)>; 2] = [None, None];
     let (mut stretch, mut stride) = (0.0, -pretension / stiffness);
-    for _ in 0..60 {
+    for _ in 0..MOST_LENGTHS {
         let balance = relax(&mut bare, q, pretension);
         accept(system, balance, "pretension on the joints")?;
         let missing = pretension - mean_tension(&bare, chain, q);
-        if at == PretensionAt::MeanPhase || missing.abs() < 1e-3 * pretension {
+        if at == PretensionAt::MeanPhase || missing.abs() < MET * pretension {
             return Ok(());
         }
         bracket[usize::from(missing < 0.0)] = Some((stretch, missing));
+        // The next length: outward until one is known on either side, then between them.
         let next = match bracket {
             // A slack chain tells nothing about how much is missing: go on in growing strides.
             [Some((long, _)), None] => {
@@ -125,17 +126,12 @@ fn tighten(
         };
         let change = next - stretch;
         stretch = next;
+        // Both the chain that is relaxed and the one that is to be assembled.
         for target in [&mut bare, &mut *system] {
             target.chains[chain].chain.lengthen(change);
         }
     }
-    Err(AssemblyError::NoEquilibrium {
-        stage: "pretension on the joints",
-        residual: 1.0,
-        iterations: 60,
-        tensioned: system.is_tensioned(),
-        pull: None,
-    })
+    Err(system.no_equilibrium("pretension on the joints", 1.0, MOST_LENGTHS))
 }
 
 fn mean_tension(system: &System, chain: usize, q: &[f64]) -> f64 {
@@ -143,12 +139,7 @@ fn mean_tension(system: &System, chain: usize, q: &[f64]) -> f64 {
     let still = vec![0.0; q.len()];
     forces(system, q, &still, &mut record);
     let member = &system.chains[chain];
-    let at = Moment {
-        t: system.begin,
-        q,
-        v: &still,
-        z: &[],
-    };
+    let at = Moment::stateless(system.begin, q, &still);
     let mut tensions = Vec::new();
     let own = member.own(at);
     let record = &record.chains[chain];
@@ -159,12 +150,7 @@ fn mean_tension(system: &System, chain: usize, q: &[f64]) -> f64 {
 fn forces(system: &System, q: &[f64], still: &[f64], record: &mut Record) -> Vec<f64> {
     let mut a = vec![0.0; q.len()];
     let mut rates = vec![0.0; Flow::ALL.len()];
-    let at = Moment {
-        t: system.begin,
-        q,
-        v: still,
-        z: &[],
-    };
+    let at = Moment::stateless(system.begin, q, still);
     system.evaluate(at, &mut a, &mut rates, record);
     a
 }
@@ -177,6 +163,7 @@ fn relax(system: &mut System, q: &mut [f64], typical: f64) -> Balance {
     let mut a = forces(system, q, &still, &mut record);
     let (mut worst, mut residual) = system.imbalance(q, &a, &record, typical);
     let mut best = (worst, residual, q.to_vec());
+    // The first step reaches ten times as far as 1/ω of the stiffest mode.
     let Rates { squared, .. } = system.rates(&mut record);
     let scale = (1.0 / squared.sqrt()).min(1e-4);
     let longest = 10.0;
@@ -191,11 +178,13 @@ fn relax(system: &mut System, q: &mut [f64], typical: f64) -> Balance {
         Some(late) => late + MOST,
     };
     while residual > CONVERGED && iterations < most(accepted) {
+        // From an acceptable state on only so many iterations are made.
         if best.1 < ACCEPTED {
             accepted.get_or_insert(iterations);
         }
         iterations += 1;
         let weight = reach * reach;
+        // (M + k K) Δq = k M a with k = τ², where τ is the reach of the step in time.
         let mut step: Vec<f64> = a.iter().map(|a| a * weight).collect();
         let weights = Weights {
             once: false,
@@ -212,6 +201,7 @@ fn relax(system: &mut System, q: &mut [f64], typical: f64) -> Balance {
             terms.map(|((a, inertia), step)| a * inertia * step).sum()
         };
         let start = drive(&a);
+        // A line search: the forces at the end of the step shall not drive it back by more than half of what drove it on.
         let whole = system.within_reach(&step);
         let mut share = whole;
         for look in 0..6 {
@@ -227,6 +217,7 @@ fn relax(system: &mut System, q: &mut [f64], typical: f64) -> Balance {
             share *= (start / (start - end)).max(0.1);
         }
         q.copy_from_slice(&trial);
+        // A step that had to be shortened was too bold, and the next reaches less far.
         reach = if share < whole {
             (reach * 0.6).max(scale)
         } else {
@@ -248,6 +239,7 @@ impl System {
     /// The same statics with everything prescribed at rest, so that no contact closes or slips, and with wheels
     /// that turn as easily as the chain on them: heavy ones would hold up the iteration.
     fn at_rest(&self) -> Self {
+        // Tensioners push as they do at rest, and given motions stand still.
         let mut light = self.clone();
         for slide in &mut light.bodies.slides {
             slide.push = slide.push.relaxed();
@@ -287,12 +279,7 @@ impl System {
     /// Largest force out of balance \[N\], and relative to the largest force in a joint or on a tooth.
     fn imbalance(&self, q: &[f64], a: &[f64], record: &Record, typical: f64) -> (f64, f64) {
         let still = vec![0.0; q.len()];
-        let at = Moment {
-            t: self.begin,
-            q,
-            v: &still,
-            z: &[],
-        };
+        let at = Moment::stateless(self.begin, q, &still);
         let mut worst = 0.0_f64;
         let mut pressed = 0.0_f64;
         for (member, record) in self.chains.iter().zip(&record.chains) {

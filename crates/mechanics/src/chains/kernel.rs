@@ -1,7 +1,7 @@
 //! The kernels of a chain as one call, compiled for every kind of processor.
 
-use chaindrive_integrate::Moment;
-use pulp::{Simd, WithSimd};
+use chaindrive_integrate::{Moment, kernel};
+use pulp::Simd;
 
 use super::makeup::Makeup;
 use crate::bodies::Surroundings;
@@ -33,39 +33,21 @@ pub(super) trait Kernel: Makeup {
     ) where
         Self: Sized,
     {
-        self.series().registers.dispatch(Forces {
-            chain: self,
-            around,
-            at,
-            a,
-            rates,
-            found,
-        });
+        let registers = self.series().registers;
+        registers.dispatch(forces(self, around, at, a, rates, found));
     }
 }
 
-struct Forces<'a, C: Kernel> {
-    chain: &'a C,
-    around: Surroundings<'a>,
-    at: Moment<'a>,
-    a: &'a mut [f64],
-    rates: &'a mut [f64],
-    found: (&'a mut Loads, &'a mut C::Work),
-}
-
-impl<C: Kernel> WithSimd for Forces<'_, C> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self {
-            chain,
-            around,
-            at,
-            a,
-            rates,
-            found,
-        } = self;
-        chain.forces(Wide(simd), around, at, a, rates, found);
+kernel!(
+    fn forces<'a, S: Simd, C: Kernel>(
+        w: Wide<S>,
+        chain: &'a C,
+        around: Surroundings<'a>,
+        at: Moment<'a>,
+        a: &'a mut [f64],
+        rates: &'a mut [f64],
+        found: (&'a mut Loads, &'a mut C::Work),
+    ) {
+        chain.forces(w, around, at, a, rates, found);
     }
-}
+);

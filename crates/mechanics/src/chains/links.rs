@@ -45,8 +45,8 @@ use crate::chains::series::Series;
 use crate::contact::{Bearing, ContactMemory, Kept, LaneTally, MemoryLanes, Tally};
 use crate::energy::Flow;
 use crate::joints::{
-    Contacts, Element, JointFindings, JointMates, JointMemory, Mate, Mount, Pairs, Part, Partner,
-    Pins, cross, touch,
+    Element, JointFindings, JointMates, JointMemory, Mate, Mount, Pairs, Part, Partner, Pins,
+    contacts, cross, touch,
 };
 use crate::lanes::Wide;
 use crate::seam::Loads;
@@ -210,15 +210,15 @@ impl Linkage {
             return Tally::new();
         };
         let dt = at.t - self.series.memory.time;
-        let tally = self.series.registers.dispatch(Contacts {
-            sides: joint_state.posture.sides(),
-            pairs: &self.pairs,
+        let tally = self.series.registers.dispatch(contacts(
+            joint_state.posture.sides(),
+            &self.pairs,
             bearing,
-            known: &self.series.memory.pins,
+            &self.series.memory.pins,
             memory,
-            pins: &mut joint_state.pins,
+            &mut joint_state.pins,
             dt,
-        });
+        ));
         if self.series.is_closed() {
             joint_state.pins.close(self.series.links);
         } else {

@@ -43,6 +43,7 @@ impl<S: Simd> Ahead<S> {
         memory.keep_thrust(lane, self.thrust);
         // A contact that begins has felt nothing yet.
         let grown = fresh.select(w.splat(0.0), self.thrust - thrust_before);
+        // ½ h c, and 1/(1 + ½ h c w)
         let lag = self.half_step * damping;
         let share = w.splat(1.0).plus(lag, self.mobility).recip();
         let ahead = force.plus(lag, grown.plus(self.mobility, force_before));

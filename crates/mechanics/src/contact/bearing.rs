@@ -135,8 +135,10 @@ impl Bearing {
         let gap = apart.present.select(gap, w.splat(FAR));
         let inverse = directed.select(inverse, zero);
         let [nx, ny] = [ex * inverse, ey * inverse];
+        // δ̇ is the speed at which the centres part.
         let [ux, uy] = apart.rate;
         let closing = nx * ux + ny * uy;
+        // Through the oil to the metal, as at every other contact. An open joint answers with nothing but its gap.
         let law = &self.lanes;
         let seen = law.see::<S, true>(w, memory, lane, gap, dt, None);
         let mut grip = Grip {
@@ -158,6 +160,7 @@ impl Bearing {
         };
         [grip.stiffness, grip.damping] = law.slopes::<S, true>(w, &pressed, None);
         grip.force = pressed.force;
+        // A force that keeps its direction along e resists what goes across it, as a pendulum does.
         grip.across = pressed.force * inverse;
         if law.friction.acts() {
             grip.levers = self.lever_lanes(w, apart.pin_after, pressed.depth);

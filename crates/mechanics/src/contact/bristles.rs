@@ -7,7 +7,8 @@
 //! ```
 
 use chaindrive_contact::friction::Lugre;
-use pulp::{Simd, WithSimd};
+use chaindrive_integrate::kernel;
+use pulp::Simd;
 
 use super::rubbing::Rubbing;
 use crate::lanes::{Lane, Wide};
@@ -82,6 +83,7 @@ impl Bristles {
         before: Lane<S>,
     ) -> [Lane<S>; 3] {
         let (zero, one) = (w.splat(0.0), w.splat(1.0));
+        // Open contacts have no normal force, and their bristles are straight.
         let touching = touching.greater(zero);
         let normal = touching.select(normal, zero);
         let [stiffness, compliance] = [self.stiffness, self.compliance].map(|x| w.splat(x));
@@ -99,12 +101,14 @@ impl Bristles {
         let stiff = stiffness * inverse;
         let bound = stiff * speed;
         let left = (bound * w.splat(dt)).decay();
+        // 1 − e⁻ᵃ: the share of the way to the steady deflection that has passed.
         let passed = -left;
         let deflection = before.plus(sign * level * compliance - before, passed);
         // As the law has it: dz′/dv.
         let pulled = sign.minus(stiff, before) * sign.minus(speed, bending);
         let swing = w.splat(dt) * moves.select(pulled, one);
         let bend = (passed * sign * slope * compliance).plus(one + left, swing);
+        // f/N, and −df/dv of it
         let mut force = stiffness * deflection;
         let mut drag = stiffness * bend;
         if self.flows {
@@ -139,21 +143,18 @@ pub(crate) struct Sweep<'a> {
     pub(crate) beside: &'a [f64],
 }
 
-impl WithSimd for Sweep<'_> {
-    /// Power that friction takes \[W\], energy of what is bent \[J\], and the steepest slope −∂M/∂ω \[N m s/rad\].
-    type Output = [f64; 3];
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let w = Wide(simd);
-        let Self { law, dt, .. } = self;
+kernel!(
+    /// Friction power \[W\], energy stored in the bristles \[J\], and the steepest slope −∂M/∂ω \[N m s/rad\].
+    pub(crate) fn swept<'a, S: Simd>(w: Wide<S>, contacts: Sweep<'a>) -> [f64; 3] {
+        let Sweep { law, dt, .. } = contacts;
         let mut sums = [w.splat(0.0); 3];
         let half = w.splat(0.5 * law.stiffness);
-        let [normals, slips, levers] = [self.normal, self.slip, self.lever].map(|all| w.lanes(all));
-        let [before, beside] = [self.before, self.beside].map(|all| w.lanes(all));
-        let mut now = Wide::<S>::lanes_mut(self.now);
-        let mut torque = Wide::<S>::lanes_mut(self.torque);
-        for i in 0..self.normal.len() / Wide::<S>::COUNT {
+        let [normals, slips, levers] =
+            [contacts.normal, contacts.slip, contacts.lever].map(|all| w.lanes(all));
+        let [before, beside] = [contacts.before, contacts.beside].map(|all| w.lanes(all));
+        let mut now = Wide::<S>::lanes_mut(contacts.now);
+        let mut torque = Wide::<S>::lanes_mut(contacts.torque);
+        for i in 0..contacts.normal.len() / Wide::<S>::COUNT {
             let (normal, slip, lever) = (normals.get(i), slips.get(i), levers.get(i));
             let [force, drag, deflection] = law.bend(w, dt, [normal, normal], slip, before.get(i));
             now.set(i, deflection);
@@ -166,24 +167,18 @@ impl WithSimd for Sweep<'_> {
         let [power, held, steepest] = sums;
         [power.sum(), held.sum(), steepest.largest()]
     }
-}
+);
 
 #[cfg(test)]
 mod tests {
     use chaindrive_integrate::Registers;
+    use pulp::WithSimd;
 
     use super::*;
     use crate::lanes::LANES;
 
-    struct Check(Lugre);
-
-    impl WithSimd for Check {
-        type Output = ();
-
-        #[inline(always)]
-        fn with_simd<S: Simd>(self, simd: S) {
-            let w = Wide(simd);
-            let Self(law) = self;
+    kernel!(
+        fn checked<S: Simd>(w: Wide<S>, law: Lugre) {
             let lanes = Bristles::new(law);
             let limit = law.static_coefficient / law.stiffness;
             for dt in [0.0, 1e-9, 1e-6, 1e-4, 1e-2] {
@@ -217,7 +212,7 @@ mod tests {
                 }
             }
         }
-    }
+    );
 
     /// As the law itself, over all slips and steps.
     #[test]
@@ -237,8 +232,8 @@ mod tests {
             ..dry
         };
         for law in [dry, damped] {
-            Check(law).with_simd(pulp::Scalar);
-            Registers::in_use().dispatch(Check(law));
+            checked(law).with_simd(pulp::Scalar);
+            Registers::in_use().dispatch(checked(law));
         }
     }
 }

@@ -158,6 +158,7 @@ impl LaneFilm {
         let both = root + w.splat(self.reach);
         let inverse = both.recip();
         let u = w.splat(2.0 * self.reach) * inverse - one;
+        // v of Reynolds' equation without the effect of pressure: its mobility grows with the cube of a (a + B).
         let cube = root * both;
         let cube = cube * cube * cube;
         let mut mobility = w.splat(self.mobility) * cube * self.shapes.mobility.of(w, u);
@@ -165,11 +166,13 @@ impl LaneFilm {
             // On the flank, which bulges, there is next to no film.
             mobility = mobility * (one - share).max(w.splat(LEAST_SHARE)).recip();
         }
+        // How much pressure thickens the oil, P, from the peak of the pressure.
         let inverse_root = root.recip();
         let pressing = w.splat(self.pressing) * both * inverse_root * self.shapes.peak.of(w, u);
         let pressing = (pressing * force).max(w.splat(LEAST_PRESSING));
         let flatness = self.shapes.flatness.of(w, u);
         let inverse_pressing = pressing.recip();
+        // What the pressure leaves of the speed, m/P, and of its change with the force, between their two limits.
         let [mut level, mut slope] = [w.splat(0.0); 2];
         let weights = [one - flatness, flatness];
         for ((bound, [a, b, c]), weight) in BOUNDS.into_iter().zip(THICKENING).zip(weights) {
@@ -223,6 +226,7 @@ impl LaneFilm {
         // Beyond rounding: a film that follows the surfaces is as thick as they let it be.
         let nothing = w.splat(NOTHING * self.film.thickness);
         let pressed = (-gap - nothing).greater(before);
+        // A film between parted surfaces comes back to what they leave room for.
         let refill = self.film.refill_time;
         let parted = if refill > 0.0 {
             room.plus(before - room, w.splat(refill / (refill + dt)))
@@ -235,6 +239,7 @@ impl LaneFilm {
         let onwards = (-gap).greater(onwards).select(onwards, before);
         let mut e = pressed.select(onwards, parted);
         let (mut rate, mut elastic) = (zero, None);
+        // Newton's method for e′ of all lanes at once: a lane that has arrived stays, others go on.
         if pressed.any() {
             let mut theta = one;
             for round in 0..MOST {
@@ -252,6 +257,7 @@ impl LaneFilm {
                 let slope = one.plus(theta, steep);
                 let next = (e - excess * slope.recip()).max(before).min(room);
                 let change = pressed.select(next - e, zero);
+                // k (1 + θ h ∂v/∂h)/(1 + θ z): as stiff as the law, less what the film drains more under more force.
                 let softer = one.plus(theta * step, found.by_film) * slope.recip();
                 // Of the last round, which changes nothing, they are those of e.
                 elastic = Some(LaneResponse {

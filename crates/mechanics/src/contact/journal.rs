@@ -86,21 +86,14 @@ impl Holding for LaneJournal {
 
 #[cfg(test)]
 mod tests {
-    use chaindrive_integrate::Registers;
+    use chaindrive_integrate::{Registers, kernel};
     use pulp::WithSimd;
 
     use super::*;
     use crate::lanes::LANES;
 
-    struct Check(Stribeck);
-
-    impl WithSimd for Check {
-        type Output = ();
-
-        #[inline(always)]
-        fn with_simd<S: Simd>(self, simd: S) {
-            let w = Wide(simd);
-            let Self(law) = self;
+    kernel!(
+        fn checked<S: Simd>(w: Wide<S>, law: Stribeck) {
             let lanes = LaneJournal::new(law);
             for dt in [0.0, 1e-7, 1e-4] {
                 for i in -60_i32..=60 {
@@ -133,7 +126,7 @@ mod tests {
                 }
             }
         }
-    }
+    );
 
     /// As the law itself, over all slips and loads.
     #[test]
@@ -146,7 +139,7 @@ mod tests {
             relative_clearance: 0.01,
             stiffness: 1e8,
         };
-        Check(law).with_simd(pulp::Scalar);
-        Registers::in_use().dispatch(Check(law));
+        checked(law).with_simd(pulp::Scalar);
+        Registers::in_use().dispatch(checked(law));
     }
 }

@@ -1,6 +1,7 @@
 //! The inner loop: lanes of rollers against one body.
 
-use pulp::{Simd, WithSimd};
+use chaindrive_integrate::kernel;
+use pulp::Simd;
 
 use super::ahead::Ahead;
 use super::look::{FacedSurface, Place, View};
@@ -32,19 +33,11 @@ impl Contacts {
         touch: &mut Touch,
         wrench: &mut Wrench,
     ) {
-        let touching = Touching {
-            contacts: self,
-            t,
-            frame,
-            rollers,
-            yielding,
-            touch,
-        };
         // Not one value of two calls: it would be put together in memory, and waited for.
         if self.law.is_long() {
-            *wrench = w.call(touching);
+            *wrench = w.call(long(self, t, frame, rollers, yielding, touch));
         } else {
-            *wrench = touching.act::<S, false>(w);
+            *wrench = self.all_lanes::<S, false>(w, t, frame, rollers, yielding, touch);
         }
     }
 
@@ -77,6 +70,7 @@ impl Contacts {
             dy,
             spin,
         };
+        // Where the circles are in the coordinates of the face: of teeth each in the gap that it sits in, or in none, beyond the tips.
         let mut near = slot.valid;
         let place = match &self.shape {
             Shape::Teeth(teeth) => {
@@ -103,10 +97,12 @@ impl Contacts {
             }
             Shape::Rail { reference, .. } => Place::at_rail(w, *reference, frame, [dx, dy]),
         };
+        // What the circles face there, with the errors of single gaps.
         let mut faced = view.faced(w, &place, self.touching, self.law.flank.is_some());
         if let Some(uneven) = &slots.uneven {
             faced.gap = faced.gap - uneven.larger(slot.axis);
         }
+        // Forces, if any circle touches; a lane that touches is looked at in the next step.
         let Some(closing) =
             self.respond::<S, LONG>(w, dt, &motion, &faced, near, slot, rollers, slots, sums)
         else {
@@ -117,6 +113,8 @@ impl Contacts {
             slots.set_wake(slot.lane, AWAKE);
             return false;
         }
+        // None touches: the lane rests as long as nothing can reach it. A circle close to its gap does not rest. Along a bulging face that
+        // does not turn the gap is convex in time, and the closing speed bounds it.
         let (close, convex) = match &self.shape {
             Shape::Teeth(_) => {
                 let close = w.splat(CLOSE * self.radius).greater(faced.gap) & slot.valid;
@@ -157,6 +155,7 @@ impl Contacts {
         let gap = near.select(faced.gap, w.splat(FAR));
         // δ̇ = −n·u
         let closing = -(faced.nx * motion.ux).plus(faced.ny, motion.uy);
+        // How much of the contact is on the flank.
         let share = law.share(w, faced.beyond);
         let inverse_mass = w.load(rollers.inverse_mass, roller);
         // Not a closure: one that is not inlined is compiled for the oldest processor.
@@ -171,6 +170,7 @@ impl Contacts {
             }
             None => None,
         };
+        // Through the oil to the metal; none of it, where all are open.
         let (memory, tally) = (&mut slots.memory, &mut sums.tally);
         let seen = law.see::<S, LONG>(w, memory, lane, gap, dt, share);
         let Some(pressed) =
@@ -178,6 +178,7 @@ impl Contacts {
         else {
             return Some(closing);
         };
+        // The force along the normal, its moment on the body, and its damping.
         let force = pressed.force;
         let (tx, ty) = (-faced.ny, faced.nx);
         let (mut fx, mut fy) = (force * faced.nx, force * faced.ny);
@@ -207,6 +208,7 @@ impl Contacts {
                 faces.secant.set(lane, rubbing.secant);
             }
         }
+        // Circles are pushed by F, and the body receives −F: in sums over all lanes.
         let [ax, ay] = [w.load(rollers.ax, roller), w.load(rollers.ay, roller)];
         ax.plus(fx, inverse_mass).store(rollers.ax, roller);
         ay.plus(fy, inverse_mass).store(rollers.ay, roller);
@@ -215,6 +217,7 @@ impl Contacts {
         sums.fy = sums.fy - fy;
         sums.moment += moment;
         sums.damping = sums.damping.max(damping);
+        // What implicit steps and other elements of the chain ask of every contact.
         if let Some(faces) = &mut slots.faces {
             let [stiffness, damping] = law.slopes::<S, LONG>(w, &pressed, share);
             faces.stiffness.set(lane, stiffness);
@@ -230,49 +233,46 @@ impl Contacts {
     }
 }
 
-/// One body and what touches it, as one call: long laws do not burden the kernel that others are in.
-struct Touching<'a, 'b> {
-    contacts: &'a Contacts,
-    t: f64,
-    frame: &'a Frame,
-    rollers: &'a mut Rollers<'b>,
-    yielding: Option<f64>,
-    touch: &'a mut Touch,
-}
-
-impl WithSimd for Touching<'_, '_> {
-    type Output = Wrench;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Wrench {
-        self.act::<S, true>(Wide(simd))
+kernel!(
+    /// One body and what touches it, as one call: long laws do not burden the kernel that others are in.
+    fn long<'a, 'b, S: Simd>(
+        w: Wide<S>,
+        contacts: &'a Contacts,
+        t: f64,
+        frame: &'a Frame,
+        rollers: &'a mut Rollers<'b>,
+        yielding: Option<f64>,
+        touch: &'a mut Touch,
+    ) -> Wrench {
+        contacts.all_lanes::<S, true>(w, t, frame, rollers, yielding, touch)
     }
-}
+);
 
-impl Touching<'_, '_> {
+impl Contacts {
+    /// All lanes of rollers that can touch the body, and what it receives of them.
     #[inline(always)]
-    fn act<S: Simd, const LONG: bool>(self, w: Wide<S>) -> Wrench {
-        let Self {
-            contacts,
-            t,
-            frame,
-            rollers,
-            yielding,
-            touch,
-        } = self;
-        let dt = t - contacts.accepted;
+    fn all_lanes<S: Simd, const LONG: bool>(
+        &self,
+        w: Wide<S>,
+        t: f64,
+        frame: &Frame,
+        rollers: &mut Rollers<'_>,
+        yielding: Option<f64>,
+        touch: &mut Touch,
+    ) -> Wrench {
+        let dt = t - self.accepted;
         // Of one length that is seen here, places of lanes are checked once.
         let rollers = &mut rollers.of_one_length();
-        touch.resize(contacts.slots * contacts.sides());
-        let mut slots = Slots::new(w, contacts, touch);
+        touch.resize(self.slots * self.sides());
+        let mut slots = Slots::new(w, self, touch);
         let mut sums = Sums::new(w);
         let mut touching = false;
         // A copy: what may change while slots are written is read from memory again for every lane.
         let eccentric = frame.eccentric;
         let frame = frame.at_centre();
-        for side in 0..contacts.sides() {
-            let view = contacts.view(side);
-            for (eight, run) in contacts.runs.iter().enumerate() {
+        for side in 0..self.sides() {
+            let view = self.view(side);
+            for (eight, run) in self.runs.iter().enumerate() {
                 for offset in (0..LANES).step_by(Wide::<S>::COUNT) {
                     let place = (eight * LANES + offset) / Wide::<S>::COUNT;
                     let lane = side * slots.lanes() + place;
@@ -290,12 +290,12 @@ impl Touching<'_, '_> {
                     };
                     let (slots, sums) = (&mut slots, &mut sums);
                     touching |=
-                        contacts.lane::<S, LONG>(w, dt, &frame, view, slot, rollers, slots, sums);
+                        self.lane::<S, LONG>(w, dt, &frame, view, slot, rollers, slots, sums);
                 }
             }
         }
         if touching {
-            let wrench = sums.total(contacts.law.friction.acts());
+            let wrench = sums.total(self.law.friction.acts());
             // About the axis: M = M_c + e × F
             let [fx, fy] = wrench.force;
             Wrench {

@@ -167,12 +167,14 @@ impl SurfaceLaw {
         let zero = w.splat(0.0);
         let gap = seen.gap;
         memory.look(lane, gap, closing);
+        // A contact is closed where surfaces overlap. A lane of open ones is over here.
         let depth = (-gap).max(zero);
         let closed = depth.greater(zero);
         if !closed.any() {
             memory.open(w, lane);
             return None;
         }
+        // Of contacts that begin now the approach speed v is found once, and kept while they last.
         let before = memory.inverse_onset(lane);
         let mut inverse_onset = closed.select(before, zero);
         let fresh = closed & w.splat(f64::MIN_POSITIVE).greater(before);
@@ -193,6 +195,7 @@ impl SurfaceLaw {
         if let (Some(_), Some(share)) = (&self.flank, share) {
             memory.keep_share(lane, share);
         }
+        // What the surfaces store, and what its dissipation adds to that.
         let stored = elastic.force;
         let [one, factor, damping] = [1.0, self.factor, self.damping].map(|x| w.splat(x));
         let ratio_at = |closing: Lane<S>| (closing * inverse_onset).min(w.splat(RATIO_LIMIT));
@@ -202,12 +205,14 @@ impl SurfaceLaw {
         let steepest = damping.plus(stored, factor * inverse_onset);
         let mut steep = steepest;
         let mut returned = stored;
+        // A part of the contact alone is counted: a half at an eye.
         if let Some(weight) = weight {
             raw = weight * raw;
             steep = weight * steep;
             returned = weight * returned;
         }
         let mut force = closed.select(raw.max(zero), zero);
+        // Where velocities are predicted, the force is that of the closing speed at the end of the step.
         if let Some(ahead) = ahead {
             let raw = closed.select(raw, zero);
             let [change, ahead] = ahead.change(w, memory, lane, fresh, [raw, steep]);
@@ -221,6 +226,7 @@ impl SurfaceLaw {
         if LONG && self.film.is_some() {
             tally.normal_loss = tally.normal_loss.plus(force, seen.draining);
         }
+        // The deepest contact decides about steps.
         tally.depth = tally.depth.max(depth);
         Some(Pressed {
             closed,
@@ -250,6 +256,7 @@ impl SurfaceLaw {
         slip: Lane<S>,
         tally: &mut LaneTally<S>,
     ) -> Rubbing<S> {
+        // Friction that sticks goes on from its deflection at the last accepted state.
         let before = if self.friction.remembers() {
             memory.stick(w, lane)
         } else {
@@ -286,6 +293,7 @@ impl SurfaceLaw {
         };
         // ∂F/∂δ = k (1 + χ min(δ̇/v, 4)),   ∂F/∂δ̇ = χ g/v + c
         let factor = w.splat(self.factor);
+        // A force that a limit holds does not change with depth or speed.
         let pushes = pressed.force.greater(zero);
         let free = w
             .splat(RATIO_LIMIT)

@@ -13,7 +13,8 @@
 //! of the gap to the left as side j − 1, counted round.
 
 use chaindrive_geometry::Point;
-use pulp::{Simd, WithSimd};
+use chaindrive_integrate::kernel;
+use pulp::Simd;
 
 use super::{Contacts, Frame, Shape, Teeth};
 use crate::lanes::{LANES, Lane, Mask, Wide, rarely};
@@ -132,65 +133,28 @@ impl<S: Simd> Place<S> {
     }
 }
 
-/// What rollers face of which [`Place::needs_more`] is true: rare, and long.
-///
-/// It is a call of its own, compiled for the kind of processor that asks, so that the inner loop stays short. Such a call takes
-/// numbers, not lanes.
-struct Elsewhere<'a> {
-    stretches: &'a [Stretch],
-    side: usize,
-    at: [[f64; LANES]; 2],
-    /// Positive for rollers that have left their gap to the right, and to the left.
-    over: Option<[[f64; LANES]; 2]>,
-    radius: f64,
-    measured: bool,
-    /// What they would face on their own side.
-    faced: [[f64; LANES]; 5],
-}
-
-impl Elsewhere<'_> {
-    #[inline(always)]
-    fn ask<S: Simd>(
+kernel!(
+    /// What rollers face of which [`Place::needs_more`] is true: rare, and long.
+    ///
+    /// It is a call of its own, compiled for the kind of processor that asks, so that the inner loop stays short. Such a call takes
+    /// numbers, not lanes.
+    fn elsewhere<'a, S: Simd>(
         w: Wide<S>,
-        stretches: &[Stretch],
+        stretches: &'a [Stretch],
         side: usize,
-        place: &Place<S>,
+        at: [[f64; LANES]; 2],
+        /// Positive for rollers that have left their gap to the right, and to the left.
+        over: Option<[[f64; LANES]; 2]>,
         radius: f64,
         measured: bool,
-        faced: FacedSurface<S>,
-    ) -> FacedSurface<S> {
-        let yes = |mask: Mask<S>| mask.select(w.splat(1.0), w.splat(0.0)).numbers();
-        let found = w.call(Elsewhere {
-            stretches,
-            side,
-            at: place.at.map(Lane::numbers),
-            over: place.over.map(|over| over.map(yes)),
-            radius,
-            measured,
-            faced: faced.lanes().map(Lane::numbers),
-        });
-        FacedSurface::of(found.map(|numbers| w.load(&numbers, 0)))
-    }
-}
-
-impl WithSimd for Elsewhere<'_> {
-    type Output = [[f64; LANES]; 5];
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let Self {
-            stretches,
-            side,
-            radius,
-            measured,
-            ..
-        } = self;
-        let w = Wide(simd);
-        let at = self.at.map(|numbers| w.load(&numbers, 0));
-        let mut faced = FacedSurface::of(self.faced.map(|numbers| w.load(&numbers, 0)));
+        /// What they would face on their own side.
+        faced: [[f64; LANES]; 5],
+    ) -> [[f64; LANES]; 5] {
+        let at = at.map(|numbers| w.load(&numbers, 0));
+        let mut faced = FacedSurface::of(faced.map(|numbers| w.load(&numbers, 0)));
         let all = w.first(Wide::<S>::COUNT);
         faced = stretches[side].other_way(w, all, faced, at, radius, measured);
-        if let (Some(over), true) = (self.over, stretches.len() > 1) {
+        if let (Some(over), true) = (over, stretches.len() > 1) {
             let count = stretches.len();
             for (over, neighbour) in over.iter().zip([count - 1, 1]) {
                 let over = w.load(over, 0).greater(w.splat(0.5));
@@ -204,7 +168,7 @@ impl WithSimd for Elsewhere<'_> {
         }
         faced.lanes().map(Lane::numbers)
     }
-}
+);
 
 impl View<'_> {
     /// The surfaces that circles of some radius face; how far beyond the hollow they are only if `measured`.
@@ -222,7 +186,17 @@ impl View<'_> {
                 let faced = stretches[side].face(w, place.at, radius, measured);
                 if place.needs_more(w, stretches, side) {
                     rarely();
-                    Elsewhere::ask(w, stretches, side, place, radius, measured, faced)
+                    let yes = |mask: Mask<S>| mask.select(w.splat(1.0), w.splat(0.0)).numbers();
+                    let found = w.call(elsewhere(
+                        stretches,
+                        side,
+                        place.at.map(Lane::numbers),
+                        place.over.map(|over| over.map(yes)),
+                        radius,
+                        measured,
+                        faced.lanes().map(Lane::numbers),
+                    ));
+                    FacedSurface::of(found.map(|numbers| w.load(&numbers, 0)))
                 } else {
                     faced
                 }

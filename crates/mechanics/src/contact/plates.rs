@@ -8,7 +8,8 @@
 //! Lanes that nothing can reach for a while rest, where the chain says how its pins are accelerated.
 
 use chaindrive_geometry::{Point, Vector};
-use pulp::{Simd, WithSimd};
+use chaindrive_integrate::kernel;
+use pulp::Simd;
 
 use super::ahead::Ahead;
 use super::memory::FAR;
@@ -46,33 +47,21 @@ pub(crate) trait PlatePins {
     fn push<S: Simd>(&mut self, w: Wide<S>, link: usize, forces: OfPins<S>);
 }
 
-/// All contacts with one rail as one call that is compiled for every kind of processor: kernels that call it stay short.
-pub(crate) struct Pressing<'a, P> {
-    pub(crate) plates: &'a PlateContact,
-    pub(crate) t: f64,
-    pub(crate) frame: Frame,
-    pub(crate) pins: &'a mut P,
-    /// By how much the guide yields to one plate \[1/kg\].
-    pub(crate) yielding: f64,
-    pub(crate) touch: &'a mut Touch,
-}
-
-impl<P: PlatePins> WithSimd for Pressing<'_, P> {
-    type Output = Wrench;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Wrench {
-        let Self {
-            plates,
-            t,
-            frame,
-            pins,
-            yielding,
-            touch,
-        } = self;
-        plates.act(Wide(simd), t, &frame, pins, yielding, touch)
+kernel!(
+    /// All contacts with one rail as one call: kernels that call it stay short.
+    pub(crate) fn pressing<'a, S: Simd, P: PlatePins>(
+        w: Wide<S>,
+        plates: &'a PlateContact,
+        t: f64,
+        frame: Frame,
+        pins: &'a mut P,
+        /// By how much the guide yields to one plate \[1/kg\].
+        yielding: f64,
+        touch: &'a mut Touch,
+    ) -> Wrench {
+        plates.act(w, t, &frame, pins, yielding, touch)
     }
-}
+);
 
 /// Contacts of all links with one rail.
 #[derive(Clone, Debug)]
@@ -235,6 +224,7 @@ impl PlateContact {
             for link in (first..first + LANES).step_by(Wide::<S>::COUNT) {
                 let lane = link / Wide::<S>::COUNT;
                 let until = self.memory.wake[link];
+                // The lane rests: nothing can reach it before this time.
                 if link >= self.links || until > t {
                     // What was written at the beginning of the rest is as open.
                     if wake[link] < until {
@@ -292,12 +282,14 @@ impl PlateContact {
         let [ox, oy] = [frame.origin.x, frame.origin.y].map(|number| w.splat(number));
         let [rx, ry] = [self.reference.x, self.reference.y].map(|number| w.splat(number));
         // d = p − o,   p' = reference + Rᵀ d
+        // The line between the pins in the coordinates of the face.
         let [[px, py], [qx, qy]] = pins.places(w, link);
         let (dx, dy, ex, ey) = (px - ox, py - oy, qx - px, qy - py);
         let a = [c * dx + s * dy + rx, c * dy - s * dx + ry];
         let along = [c * ex + s * ey, c * ey - s * ex];
         let square = ex * ex + ey * ey;
         let b = [a[0] + along[0], a[1] + along[1]];
+        // Plates far from the box of the face are open, without a look at the face.
         let apart = self.outside(w, a).min(self.outside(w, b));
         let near = w.splat(REACH * self.half_height).greater(apart) & valid;
         // No part of an edge is nearer to the box than its nearer end, less half of its length.
@@ -309,6 +301,7 @@ impl PlateContact {
             let speeds = [[vx, vy], [wx, wy]];
             return Some(self.rest(w, dt, frame, link, clear, speeds, pins));
         }
+        // Where the edge comes nearest to the face, and the normal there in the plane.
         let found = self.nearest_of(w, a, along, square);
         let gap = near.select(found.gap, far);
         let (nx, ny) = (c * found.nx - s * found.ny, s * found.nx + c * found.ny);
@@ -319,8 +312,10 @@ impl PlateContact {
         let ux = vx + share * (wx - vx) - w.splat(frame.velocity.x) + spin * dy;
         let uy = vy + share * (wy - vy) - w.splat(frame.velocity.y) - spin * dx;
         let closing = -(nx * ux + ny * uy);
+        // Between its pins a plate touches alone; at an eye two plates share the contact.
         let inside = share.greater(w.splat(0.0)) & one.greater(share);
         let weight = inside.select(one, half);
+        // What the contact would do to its own closing speed by the end of the step: damping is taken there.
         let ahead = match pins.drawn(w, link) {
             Some(drawn) => {
                 // All plates beside one another press alike, each on two pins: a pin bears as much as one plate.
@@ -338,6 +333,7 @@ impl PlateContact {
             None => None,
         };
         let (weight, tally) = (Some(weight), &mut sums.tally);
+        // Force of oil and metal. None of it, where no plate touches: then the lane may rest.
         let seen = law.see::<S, true>(w, memory, lane, gap, dt, None);
         let Some(pressed) =
             law.press::<S, true>(w, memory, lane, seen, closing, None, weight, ahead, tally)
@@ -364,6 +360,7 @@ impl PlateContact {
             damping += across;
             sums.across = sums.across.max(across);
         }
+        // The lever rule shares the force between the pins, and the guide receives the opposite.
         let [first, second] = [one - share, share].map(|share| [share * fx, share * fy]);
         pins.push(w, link, [first, second]);
         sums.fx += -fx;
@@ -438,6 +435,7 @@ impl PlateContact {
         square: Lane<S>,
     ) -> Touched<S> {
         let [zero, one] = [0.0, 1.0].map(|number| w.splat(number));
+        // Both ends first, then every bulging arc that the line passes: the nearest foot counts.
         let inverse_square = square.max(w.splat(f64::MIN_POSITIVE)).recip();
         let mut best = self.touched(w, a, along, zero);
         best = self.touched(w, a, along, one).or(best);

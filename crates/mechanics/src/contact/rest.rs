@@ -43,6 +43,7 @@ impl<S: Simd> Clear<S> {
     /// not.
     #[inline(always)]
     pub(super) fn rest(&self, w: Wide<S>, dt: f64, spin: f64) -> f64 {
+        // One lane rests as a whole: the least gap and the largest speed and acceleration of any of its circles count.
         let gap = self.gap.smallest();
         let whole = self.speed.largest().sqrt();
         let speed = match self.closing {
@@ -70,33 +71,26 @@ mod tests {
     use chaindrive_contact::elastic::Power;
     use chaindrive_contact::{Elastic, Friction, Law};
     use chaindrive_geometry::{Piece, Point, Seat, Segment, Tip, ToothForm, ToothGap, Vector};
-    use chaindrive_integrate::Registers;
-    use pulp::WithSimd;
+    use chaindrive_integrate::{Registers, kernel};
 
     use super::*;
     use crate::contact::{Contacts, Frame, Places, Rollers, Shape, Teeth, Touch, Wrench};
     use crate::profile::{GapFace, RailFace};
     use crate::surface::Surface;
 
-    struct Look<'a> {
-        contacts: &'a Contacts,
-        t: f64,
-        frame: Frame,
-        rollers: Rollers<'a>,
-        touch: &'a mut Touch,
-    }
-
-    impl WithSimd for Look<'_> {
-        type Output = ();
-
-        #[inline(always)]
-        fn with_simd<S: Simd>(mut self, simd: S) {
-            let (t, rollers, touch) = (self.t, &mut self.rollers, self.touch);
-            let wrench = &mut Wrench::default();
-            self.contacts
-                .act(Wide(simd), t, &self.frame, rollers, None, touch, wrench);
+    kernel!(
+        fn look<'a, S: Simd>(
+            w: Wide<S>,
+            contacts: &'a Contacts,
+            t: f64,
+            frame: Frame,
+            rollers: Rollers<'a>,
+            touch: &'a mut Touch,
+        ) {
+            let (mut rollers, mut wrench) = (rollers, Wrench::default());
+            contacts.act(w, t, &frame, &mut rollers, None, touch, &mut wrench);
         }
-    }
+    );
 
     const RADIUS: f64 = 0.01;
     const DT: f64 = 1e-5;
@@ -153,13 +147,7 @@ mod tests {
                 spin: &[],
                 half_step: 0.0,
             };
-            Registers::in_use().dispatch(Look {
-                contacts,
-                t,
-                frame: here,
-                rollers,
-                touch: &mut touch,
-            });
+            Registers::in_use().dispatch(look(contacts, t, here, rollers, &mut touch));
             std::mem::swap(&mut contacts.memory, &mut touch);
             contacts.accepted = t;
             for i in 0..count {

@@ -72,10 +72,12 @@ impl Stacked {
         let depth = depth.max(w.splat(LEAST_DEPTH));
         let n = w.splat(self.exponent);
         let yielding = w.splat(self.stiffness * self.compliance);
+        // r = K δⁿ⁻¹/k_s says how the depth is shared. Its logarithm chooses the polynomial.
         let octaves = w.splat(self.at_one) + (n - one) * w.splat(LOG2_E) * depth.ln();
         let from = w.splat(FROM);
         let beyond = octaves.greater(w.splat(FROM + OCTAVES));
         let (far, near) = (octaves.greater(from), closed & from.greater(octaves));
+        // One polynomial serves up to r = 1 and another beyond, as far as they reach; a lane that has both asks both.
         if let (Some(of_far), Some(of_near)) = (&self.far, &self.near)
             && !beyond.any()
         {
@@ -95,6 +97,7 @@ impl Stacked {
             return far.select(deep, shallow);
         }
         let r = yielding * self.lower.of(w, depth);
+        // No polynomial serves: Newton's method from the share of a linear law, in as many steps as any r may take.
         let beside = (one + r).recip();
         let mut x = depth * beside;
         for _ in 0..self.steps {
@@ -181,20 +184,14 @@ fn steps(n: f64) -> usize {
 mod tests {
     use chaindrive_contact::elastic::Power;
     use chaindrive_contact::{Dissipation, Elastic, Law};
-    use chaindrive_integrate::Registers;
+    use chaindrive_integrate::{Registers, kernel};
     use pulp::WithSimd;
 
     use super::*;
     use crate::lanes::LANES;
 
-    struct Check;
-
-    impl WithSimd for Check {
-        type Output = ();
-
-        #[inline(always)]
-        fn with_simd<S: Simd>(self, simd: S) {
-            let w = Wide(simd);
+    kernel!(
+        fn checked<S: Simd>(w: Wide<S>) {
             let cases = [
                 (8.5e8, 1.08),
                 (6.6e10, 1.5),
@@ -229,13 +226,13 @@ mod tests {
                 }
             }
         }
-    }
+    );
 
     /// As the law itself, whose Newton method goes on until nothing changes.
     #[test]
     fn lanes_find_what_the_law_says() {
-        Registers::in_use().dispatch(Check);
-        Check.with_simd(pulp::Scalar);
+        Registers::in_use().dispatch(checked());
+        checked().with_simd(pulp::Scalar);
     }
 
     /// Nothing where there is no contact.

@@ -8,8 +8,8 @@
 //! Which side is the pin and which the bush matters for friction alone, whose levers differ.
 
 use chaindrive_geometry::Vector;
-use chaindrive_integrate::Array;
-use pulp::{Simd, WithSimd};
+use chaindrive_integrate::{Array, kernel};
+use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
 use super::{Element, JointMates, Mate, Partner, Sides};
@@ -198,43 +198,30 @@ impl Pins {
     }
 }
 
-/// The contact of all joints, as one call that is compiled for every kind of processor.
-pub(crate) struct Contacts<'a> {
-    /// Sides before and after the joints.
-    pub(crate) sides: [&'a Sides; 2],
-    pub(crate) pairs: &'a Pairs,
-    pub(crate) bearing: &'a Bearing,
-    /// Memory of the accepted state, and of this one.
-    pub(crate) known: &'a ContactMemory,
-    pub(crate) memory: &'a mut ContactMemory,
-    pub(crate) pins: &'a mut Pins,
-    /// Time since the accepted state \[s\].
-    pub(crate) dt: f64,
-}
-
-impl WithSimd for Contacts<'_> {
-    /// The power lost, and how contacts began.
-    type Output = Tally;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Tally {
-        self.act(Wide(simd))
-    }
-}
-
-impl Contacts<'_> {
-    #[inline(always)]
-    pub(crate) fn act<S: Simd>(self, w: Wide<S>) -> Tally {
-        let joints = self.pairs.count;
-        self.memory.resize(padded(joints));
-        self.pins.resize(joints);
-        let [before, after] = self.sides;
-        let pairs = self.pairs;
-        let (bearing, pins) = (self.bearing, self.pins);
-        let mut memory = MemoryLanes::new(w, self.known, self.memory, padded(joints));
+kernel!(
+    /// The contact of all joints: the power lost, and how contacts began.
+    pub(crate) fn contacts<'a, S: Simd>(
+        w: Wide<S>,
+        /// Sides before and after the joints.
+        sides: [&'a Sides; 2],
+        pairs: &'a Pairs,
+        bearing: &'a Bearing,
+        /// Memory of the accepted state, and of this one.
+        known: &'a ContactMemory,
+        memory: &'a mut ContactMemory,
+        pins: &'a mut Pins,
+        /// Time since the accepted state \[s\].
+        dt: f64,
+    ) -> Tally {
+        let joints = pairs.count;
+        memory.resize(padded(joints));
+        pins.resize(joints);
+        let [before, after] = sides;
+        let mut memory = MemoryLanes::new(w, known, memory, padded(joints));
         let mut tally = LaneTally::new(w);
         let rubs = bearing.rubs();
         for (lane, start) in (0..joints).step_by(Wide::<S>::COUNT).enumerate() {
+            // How the pin and the bush of every joint stand and move to each other.
             let apart = Apart {
                 offset: [
                     w.load(&after.x, start) - w.load(&before.x, start),
@@ -248,13 +235,15 @@ impl Contacts<'_> {
                 present: pairs.present(w, start),
                 pin_after: pairs.pins_after(w, start),
             };
-            let grip = bearing.grip(w, &mut memory, lane, &apart, self.dt, &mut tally);
+            let grip = bearing.grip(w, &mut memory, lane, &apart, dt, &mut tally);
+            // Arms of the force on both links about their centres of mass.
             let [nx, ny] = grip.normal;
             let [bx, by] = [w.load(&before.arm_x, start), w.load(&before.arm_y, start)];
             let [ax, ay] = [w.load(&after.arm_x, start), w.load(&after.arm_y, start)];
             let turn_before = bx * ny - by * nx;
             let turn_after = ax * ny - ay * nx;
             let force = grip.force;
+            // What the side after feels; the side before feels the opposite.
             let mut push = [-(force * nx), -(force * ny)];
             let mut moment_before = force * turn_before;
             let mut moment_after = -(force * turn_after);
@@ -270,6 +259,7 @@ impl Contacts<'_> {
                 grip.drag.store(&mut pins.drag, start);
                 grip.secant.store(&mut pins.secant, start);
             }
+            // All of it is kept: links are pushed, steps are chosen and implicit steps are made of it.
             grip.gap.store(&mut pins.gap, start);
             force.store(&mut pins.force, start);
             nx.store(&mut pins.normal_x, start);
@@ -286,4 +276,4 @@ impl Contacts<'_> {
         }
         Tally::of(&tally)
     }
-}
+);

@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::MemoryError;
 use crate::articulation::Articulation;
-use crate::contact::{Holding, LaneFriction, Sweep};
+use crate::contact::{Holding, LaneFriction, Sweep, swept};
 use crate::energy::Flow;
 use crate::lanes::{Lane, Wide, padded};
 
@@ -204,7 +204,7 @@ impl Joints {
         if let LaneFriction::Bristles(law) = &self.friction {
             let [power, largest] = self.gather(w, found, turns);
             let before = &self.memory.state;
-            let [lost, held, steepest] = w.call(Sweep {
+            let [lost, held, steepest] = w.call(swept(Sweep {
                 law,
                 dt,
                 normal: &found.normal,
@@ -214,7 +214,7 @@ impl Joints {
                 now: &mut found.stick.state,
                 torque: &mut found.torque[..n],
                 beside: &self.damping,
-            });
+            }));
             found.slopes = [self.largest[0] * self.friction.stiffness(largest), steepest];
             found.stored = held;
             return JointLosses {

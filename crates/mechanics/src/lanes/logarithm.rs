@@ -40,20 +40,14 @@ impl<S: Simd> Lane<S> {
 
 #[cfg(test)]
 mod tests {
-    use chaindrive_integrate::Registers;
+    use chaindrive_integrate::{Registers, kernel};
     use pulp::WithSimd;
 
     use super::*;
     use crate::lanes::LANES;
 
-    struct Check;
-
-    impl WithSimd for Check {
-        type Output = ();
-
-        #[inline(always)]
-        fn with_simd<S: Simd>(self, simd: S) {
-            let w = Wide(simd);
+    kernel!(
+        fn checked<S: Simd>(w: Wide<S>) {
             for i in 0..40_000 {
                 let x = 10.0_f64.powf(-76.0 + 152.0 * f64::from(i) / 40_000.0);
                 for x in [x, 1.0 + 1e-3 * x.min(1.0), f64::from(i + 1) * 0.125] {
@@ -64,11 +58,11 @@ mod tests {
                 }
             }
         }
-    }
+    );
 
     #[test]
     fn agrees_with_the_standard_library() {
-        Check.with_simd(pulp::Scalar);
-        Registers::in_use().dispatch(Check);
+        checked().with_simd(pulp::Scalar);
+        Registers::in_use().dispatch(checked());
     }
 }

@@ -92,19 +92,13 @@ fn mask<S: Simd>(w: Wide<S>, bits: u64) -> S::f64s {
 
 #[cfg(test)]
 mod tests {
-    use chaindrive_integrate::Registers;
+    use chaindrive_integrate::{Registers, kernel};
     use pulp::{Scalar, Scalar128b, WithSimd};
 
     use super::*;
 
-    struct Check;
-
-    impl WithSimd for Check {
-        type Output = ();
-
-        #[inline(always)]
-        fn with_simd<S: Simd>(self, simd: S) {
-            let w = Wide(simd);
+    kernel!(
+        fn checked<S: Simd>(w: Wide<S>) {
             for i in -400..400 {
                 let x = 1.093_f64.powi(i) * (1.0 + 1e-9 * f64::from(i));
                 let [e, t] = w.splat(x).octaves().map(|lane| lane.numbers()[0]);
@@ -117,12 +111,12 @@ mod tests {
                 assert!((power / expected - 1.0).abs() < 1e-300, "{e}: {power}");
             }
         }
-    }
+    );
 
     #[test]
     fn numbers_are_taken_apart_and_put_together() {
-        Check.with_simd(Scalar);
-        Check.with_simd(Scalar128b);
-        Registers::in_use().dispatch(Check);
+        checked().with_simd(Scalar);
+        checked().with_simd(Scalar128b);
+        Registers::in_use().dispatch(checked());
     }
 }

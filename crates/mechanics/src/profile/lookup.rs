@@ -165,7 +165,7 @@ mod tests {
     use std::time::Instant;
 
     use chaindrive_geometry::{Arc, ArcSpline, Piece};
-    use chaindrive_integrate::Registers;
+    use chaindrive_integrate::{Registers, kernel};
     use pulp::WithSimd;
 
     use super::*;
@@ -226,25 +226,19 @@ mod tests {
             .collect()
     }
 
-    /// Both ways of choosing, side by side.
-    struct Both<'a>(&'a Profile, &'a [Point]);
-
-    impl WithSimd for Both<'_> {
-        type Output = ();
-
-        #[inline(always)]
-        fn with_simd<S: Simd>(self, simd: S) {
-            let w = Wide(simd);
-            for eight in self.1.chunks_exact(LANES) {
+    kernel!(
+        /// Both ways of choosing, side by side.
+        fn both<'a, S: Simd>(w: Wide<S>, profile: &'a Profile, places: &'a [Point]) {
+            for eight in places.chunks_exact(LANES) {
                 let [mut x, mut y] = [[0.0; LANES]; 2];
                 for (k, p) in eight.iter().enumerate() {
                     (x[k], y[k]) = (p.x, p.y);
                 }
                 for start in (0..LANES).step_by(Wide::<S>::COUNT) {
                     let at = [w.load(&x, start), w.load(&y, start)];
-                    let chosen = [self.0.looked_up(w, at), self.0.passed(w, at)];
+                    let chosen = [profile.looked_up(w, at), profile.passed(w, at)];
                     let [a, b] = chosen.map(|chosen| {
-                        let nearest = self.0.facing(w, at, chosen, RADIUS);
+                        let nearest = profile.facing(w, at, chosen, RADIUS);
                         [nearest.gap, nearest.nx, nearest.ny, nearest.bend]
                     });
                     for (a, b) in a.into_iter().zip(b) {
@@ -254,7 +248,7 @@ mod tests {
                 }
             }
         }
-    }
+    );
 
     /// Looking up finds what passing from feature to feature finds, and both what the exact curve finds; in lanes of every width,
     /// on faces within a quarter turn and on such as turn by much more.
@@ -285,7 +279,7 @@ mod tests {
                     })
                     .collect();
                 compared += places.len();
-                let both = || Both(&profile, &places);
+                let both = || both(&profile, &places);
                 Registers::in_use().dispatch(both());
                 both().with_simd(pulp::Scalar);
                 both().with_simd(pulp::Scalar512b);
@@ -318,29 +312,28 @@ mod tests {
         assert_eq!(short.features_along(middle(0), middle(1)), 0..7);
     }
 
-    struct Timed<'a>(&'a Profile, bool, &'a [Point]);
-
-    impl WithSimd for Timed<'_> {
-        type Output = f64;
-
-        #[inline(always)]
-        fn with_simd<S: Simd>(self, simd: S) -> f64 {
-            let w = Wide(simd);
-            let x: Vec<f64> = self.2.iter().map(|p| p.x).collect();
-            let y: Vec<f64> = self.2.iter().map(|p| p.y).collect();
+    kernel!(
+        fn timed<'a, S: Simd>(
+            w: Wide<S>,
+            profile: &'a Profile,
+            halving: bool,
+            places: &'a [Point],
+        ) -> f64 {
+            let x: Vec<f64> = places.iter().map(|p| p.x).collect();
+            let y: Vec<f64> = places.iter().map(|p| p.y).collect();
             let mut sum = w.splat(0.0);
             for start in (0..x.len()).step_by(Wide::<S>::COUNT) {
                 let at = [w.load(&x, start), w.load(&y, start)];
-                let chosen = if self.1 {
-                    self.0.looked_up(w, at)
+                let chosen = if halving {
+                    profile.looked_up(w, at)
                 } else {
-                    self.0.passed(w, at)
+                    profile.passed(w, at)
                 };
-                sum += self.0.facing(w, at, chosen, RADIUS).gap;
+                sum += profile.facing(w, at, chosen, RADIUS).gap;
             }
             sum.sum()
         }
-    }
+    );
 
     /// Nanoseconds a roller on rows of more and more features, passed and looked up. Rollers lie side by side along the whole face.
     #[test]
@@ -365,7 +358,7 @@ mod tests {
                 let once = || {
                     let start = Instant::now();
                     for _ in 0..20 {
-                        black_box(Registers::in_use().dispatch(Timed(
+                        black_box(Registers::in_use().dispatch(timed(
                             black_box(&profile),
                             halving,
                             &places,

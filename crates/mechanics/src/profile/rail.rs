@@ -18,7 +18,8 @@
 use std::f64::consts::FRAC_PI_2;
 
 use chaindrive_geometry::{Arc, Piece, Point, Vector};
-use pulp::{Simd, WithSimd};
+use chaindrive_integrate::kernel;
+use pulp::Simd;
 
 use super::{Feature, Nearest, Probe, Profile};
 use crate::lanes::{LANES, Lane, Wide, rarely};
@@ -60,12 +61,12 @@ impl RailFace {
             return nearest;
         }
         rarely();
-        let found = w.call(OtherRows {
-            rows: &self.others,
-            at: at.map(Lane::numbers),
+        let found = w.call(other_rows(
+            &self.others,
+            at.map(Lane::numbers),
             radius,
-            nearest: nearest.lanes().map(Lane::numbers),
-        });
+            nearest.lanes().map(Lane::numbers),
+        ));
         Nearest::of(found.map(|numbers| w.load(&numbers, 0)))
     }
 
@@ -98,30 +99,25 @@ impl RailFace {
     }
 }
 
-/// The nearest of the other rows, where they are nearer than the first.
-///
-/// It is a call of its own, compiled for the kind of processor that asks, so that the inner loop stays short for guides of
-/// one row. Such a call takes numbers, not lanes.
-struct OtherRows<'a> {
-    rows: &'a [Profile],
-    at: [[f64; LANES]; 2],
-    radius: f64,
-    nearest: [[f64; LANES]; 4],
-}
-
-impl WithSimd for OtherRows<'_> {
-    type Output = [[f64; LANES]; 4];
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let w = Wide(simd);
-        let at = self.at.map(|numbers| w.load(&numbers, 0));
-        let mut nearest = Nearest::of(self.nearest.map(|numbers| w.load(&numbers, 0)));
-        let radius = w.splat(self.radius);
-        for row in self.rows {
-            let other = row.nearest(w, at, self.radius);
-            let distance = (nearest.gap + radius).abs();
-            let nearer = distance.greater((other.gap + radius).abs());
+kernel!(
+    /// The nearest of the other rows, where they are nearer than the first.
+    ///
+    /// It is a call of its own, compiled for the kind of processor that asks, so that the inner loop stays short for guides of
+    /// one row. Such a call takes numbers, not lanes.
+    fn other_rows<'a, S: Simd>(
+        w: Wide<S>,
+        rows: &'a [Profile],
+        at: [[f64; LANES]; 2],
+        radius: f64,
+        nearest: [[f64; LANES]; 4],
+    ) -> [[f64; LANES]; 4] {
+        let at = at.map(|numbers| w.load(&numbers, 0));
+        let mut nearest = Nearest::of(nearest.map(|numbers| w.load(&numbers, 0)));
+        let wide_radius = w.splat(radius);
+        for row in rows {
+            let other = row.nearest(w, at, radius);
+            let distance = (nearest.gap + wide_radius).abs();
+            let nearer = distance.greater((other.gap + wide_radius).abs());
             nearest = Nearest {
                 gap: nearer.select(other.gap, nearest.gap),
                 nx: nearer.select(other.nx, nearest.nx),
@@ -131,7 +127,7 @@ impl WithSimd for OtherRows<'_> {
         }
         nearest.lanes().map(Lane::numbers)
     }
-}
+);
 
 impl<S: Simd> Nearest<S> {
     #[inline(always)]

@@ -83,7 +83,7 @@ const CRATES: [Storeys; 6] = [
             &["logger", "pointers"],
             &["units"],
             &["calls"],
-            &["states"],
+            &["states", "versions"],
             &["fmi3"],
             &["fmi2"],
             &["misuse"],

@@ -3,7 +3,7 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
-use super::{Sum, at_rest};
+use super::Sum;
 use crate::System;
 use crate::bodies::{Bodies, RailContact, RailSupport, Wheel, WheelSupport};
 use crate::contact::{Contacts, Frame, PlateContact};
@@ -22,7 +22,7 @@ struct Mount {
 /// Adds the energies of all closed contacts.
 pub(super) fn add_contacts(system: &System, q: &[f64], sum: &mut Sum<'_>) {
     let still = vec![0.0; q.len()];
-    let at = at_rest(system.begin, q, &still);
+    let at = Moment::stateless(system.begin, q, &still);
     let bodies = &system.bodies;
     for member in &system.chains {
         for on in &member.contacts.teeth {

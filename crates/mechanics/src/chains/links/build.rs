@@ -163,12 +163,7 @@ impl Linkage {
     /// From the middle of every hole to its pin.
     fn offsets(&self, begin: f64, q: &[f64], joint_state: &mut JointState) -> Vec<Vector> {
         let still = vec![0.0; q.len()];
-        let at = Moment {
-            t: begin,
-            q,
-            v: &still,
-            z: &[],
-        };
+        let at = Moment::stateless(begin, q, &still);
         self.pose_links(at, &mut joint_state.posture);
         let offset = |joint: &JointMates| {
             joint.pair.map_or_else(Vector::zeros, |mates| {
@@ -215,12 +210,7 @@ impl Linkage {
             return;
         }
         let mut joint_state = JointState::default();
-        let at = Moment {
-            t: begin,
-            q,
-            v,
-            z: &[],
-        };
+        let at = Moment::stateless(begin, q, v);
         self.pose_links(at, &mut joint_state.posture);
         joint_state.hinge_forces = vec![Vector::zeros(); self.joints.len()];
         let opening = self.joints.iter().map(|joint| {

@@ -15,8 +15,8 @@
 //! ```
 
 use chaindrive_geometry::Vector;
-use chaindrive_integrate::{Array, Weights};
-use pulp::{Simd, WithSimd};
+use chaindrive_integrate::{Array, Weights, kernel};
+use pulp::Simd;
 
 use super::by_link::ByLink;
 use super::equations::Sum;
@@ -131,11 +131,8 @@ impl Held<'_> {
             let beside = blocks.beside[j..].iter().step_by(border);
             column.read(linkage, beside.map(|r| [r.x, r.y, r.z]));
         }
-        linkage.series.registers.dispatch(Answer {
-            held: self,
-            answers,
-            kept,
-        });
+        let registers = linkage.series.registers;
+        registers.dispatch(all_answers(self, answers, kept));
         for (j, row) in answers.columns.iter().enumerate() {
             let beside = || blocks.beside[j..].iter().step_by(border);
             let through = |answer: &ByLink| -> f64 {
@@ -206,31 +203,22 @@ impl Answers {
     }
 }
 
-/// All answers, as one call that is compiled for every kind of processor.
-struct Answer<'a, 'b> {
-    held: &'a mut Held<'b>,
-    answers: &'a mut Answers,
-    /// Share of J b that J x is to be, if it is.
-    kept: Option<f64>,
-}
-
-impl WithSimd for Answer<'_, '_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let w = Wide(simd);
-        let Self {
-            held,
-            answers,
-            kept,
-        } = self;
+kernel!(
+    /// All answers.
+    fn all_answers<'a, 'b, S: Simd>(
+        w: Wide<S>,
+        held: &'a mut Held<'b>,
+        answers: &'a mut Answers,
+        /// Share of J b that J x is to be, if it is.
+        kept: Option<f64>,
+    ) {
         let Answers {
             known,
             asked,
             whole,
             columns,
         } = answers;
+        // What the joints open by under b, of which a share is to stay.
         if let Some(share) = kept {
             held.reactions
                 .set_opening(w, held.linkage, held.posture, known);
@@ -241,12 +229,13 @@ impl WithSimd for Answer<'_, '_> {
                 }
             }
         }
+        // The right-hand side with what is asked for; columns of the border keep the joints closed.
         held.answer(w, whole, Some(asked));
         for column in columns {
             held.answer(w, column, None);
         }
     }
-}
+);
 
 /// One side of a joint: its link with place along it, or the frame.
 pub(super) struct Limb {

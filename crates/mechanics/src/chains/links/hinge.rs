@@ -11,8 +11,7 @@
 //! J. Baumgarte, *Comput. Methods Appl. Mech. Eng.* **1**, 1972, 1–16 (stabilisation).
 
 use chaindrive_geometry::Vector;
-use chaindrive_integrate::{Moment, Weights};
-use pulp::{Simd, WithSimd};
+use chaindrive_integrate::{Moment, Weights, kernel};
 
 use super::by_link::ByLink;
 use super::reactions::{Inertia, Reactions, arms, load};
@@ -120,14 +119,10 @@ impl Hinges {
             let by = mates.map(|mate| ground_acceleration(linkage, mate, at));
             by.sum()
         });
-        linkage.series.registers.dispatch(Find {
-            rate: self.rate,
-            linkage,
-            posture,
-            reactions,
-            ground,
-            loads,
-        });
+        let registers = linkage.series.registers;
+        registers.dispatch(joint_forces(
+            self.rate, linkage, posture, reactions, ground, loads,
+        ));
         for (joint, force) in hinge_forces.iter_mut().enumerate() {
             let on_after = reactions.force(joint);
             *force = if linkage.pairs.pin_after(joint) {
@@ -139,36 +134,24 @@ impl Hinges {
     }
 }
 
-/// Forces in the joints under the loads on the links, and then what they do to the links in the place of these loads.
-struct Find<'a> {
-    rate: f64,
-    linkage: &'a Linkage,
-    posture: &'a Posture,
-    reactions: &'a mut Reactions,
-    /// Accelerations of the supports before the first joint and behind the last \[m/s²\].
-    ground: [Vector; 2],
-    loads: &'a mut ByLink,
-}
-
-impl WithSimd for Find<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let w = Wide(simd);
-        let Self {
-            rate,
-            linkage,
-            posture,
-            reactions,
-            ground,
-            loads,
-        } = self;
+kernel!(
+    /// Forces in the joints under the loads on the links, and then what they do to the links in the place of these loads.
+    fn joint_forces<'a, S: Simd>(
+        w: Wide<S>,
+        rate: f64,
+        linkage: &'a Linkage,
+        posture: &'a Posture,
+        reactions: &'a mut Reactions,
+        /// Accelerations of the supports before the first joint and after the last \[m/s²\].
+        ground: [Vector; 2],
+        loads: &'a mut ByLink,
+    ) {
         let (shapes, zero) = (&linkage.shapes, w.splat(0.0));
         let (before, after) = (&posture.before, &posture.after);
         let [damping, stiffness] = [2.0 * rate, rate * rate].map(|rate| w.splat(rate));
         let joints = linkage.joints.len();
         for start in (0..joints).step_by(Wide::<S>::COUNT) {
+            // By how much both sides of each joint would be accelerated apart under the loads alone.
             let [bx, by, ax, ay] = arms(w, posture, start);
             let mut drift = [zero; 2];
             // J a + J̇ v = F/m + α ẑ × r − ω² r
@@ -184,6 +167,7 @@ impl WithSimd for Find<'_> {
                 ];
             }
             // 2 α ċ + α² c
+            // What draws the sides together joins in, and makes the right-hand side of the joint forces.
             let present = linkage.pairs.present(w, start);
             for (k, (to, [place, velocity])) in reactions
                 .right
@@ -200,6 +184,7 @@ impl WithSimd for Find<'_> {
                 present.select(-drift, zero).store(to, start);
             }
         }
+        // Supports at the ends of a strand have accelerations of their own.
         if !linkage.series.is_closed() {
             let [first, last] = ground;
             for (k, right) in reactions.right.iter_mut().enumerate() {
@@ -207,6 +192,7 @@ impl WithSimd for Find<'_> {
                 right[joints - 1] -= last[k];
             }
         }
+        // Forces in the joints, and what they do to the links on either side.
         reactions.solve(w);
         for link in (0..linkage.series.links).step_by(Wide::<S>::COUNT) {
             let [x, y, turn] = reactions.load(w, posture, link);
@@ -215,7 +201,7 @@ impl WithSimd for Find<'_> {
             turn.store(&mut loads.turn, link + 1);
         }
     }
-}
+);
 
 fn ground_acceleration(linkage: &Linkage, mate: Mate, at: Moment<'_>) -> Vector {
     match mate {

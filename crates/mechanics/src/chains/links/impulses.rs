@@ -17,8 +17,8 @@ mod local;
 mod rows;
 mod tridiagonal;
 
-use chaindrive_integrate::Weights;
-use pulp::{Simd, WithSimd};
+use chaindrive_integrate::{Weights, kernel};
+use pulp::Simd;
 
 use local::Local;
 use rows::Rows;
@@ -98,11 +98,8 @@ impl Impulses {
         step: Step<'_>,
         x: &mut [f64],
     ) -> bool {
-        step.linkage.series.registers.dispatch(Solution::<R, C, B> {
-            work: self,
-            step,
-            x,
-        })
+        let registers = step.linkage.series.registers;
+        registers.dispatch(solution::<R, C, B>(self, step, x))
     }
 
     #[inline(always)]
@@ -119,6 +116,7 @@ impl Impulses {
             weights,
             joint_state,
         } = step;
+        // Rows of J at the joints, from what the links do under the forces alone, b.
         let wheels = x.len() - linkage.coordinates();
         let b = x[..3 * linkage.series.links].as_chunks::<3>().0;
         self.known.read(linkage, b.iter().copied());
@@ -126,6 +124,7 @@ impl Impulses {
         if R == 2 {
             self.rows[1].set_tangents(w, linkage, bearing, joint_state, &self.known, weights);
         }
+        // The matrix over joints and wheels: joints on lanes, wheels one by one, and all else that touches links eliminated into it.
         self.joints.clear::<R, B>(linkage, wheels);
         self.fill::<S, R, B>(w, linkage);
         self.fill_wheels::<R, B>(linkage, bodies, weights, x);
@@ -136,6 +135,7 @@ impl Impulses {
         if !condensed || !self.joints.factor::<S, R, B>(w, linkage) {
             return false;
         }
+        // Back from the impulses to the velocities: joints, contacts, wheels.
         self.joints.substitute::<R, B>(linkage);
         self.apply::<S, R>(w, linkage, x);
         self.local.apply::<R, C>(linkage, &self.joints, x);
@@ -157,6 +157,8 @@ impl Impulses {
             let mass = [before, after].map(|at| w.load(&shapes.mobility, at));
             let inertia = [before, after].map(|at| w.load(&shapes.turning, at));
             let b = [load(w, &self.known, before), load(w, &self.known, after)];
+            // Entries of 1/w + J M⁻¹ Jᵀ: of a joint with itself, through the links before and after it, and with the next, through the link
+            // between them.
             for p in 0..R {
                 let row = rows[p].load(w, start);
                 let next = rows[p].load(w, start + 1);
@@ -178,6 +180,7 @@ impl Impulses {
                         + inertia[1] * next.turn_before * other.turn_after);
                     value.store(self.joints.coupling(p, o), start);
                 }
+                // J b: how the sides of the joint part along the row.
                 let right = row.x * (b[1][0] - b[0][0])
                     + row.y * (b[1][1] - b[0][1])
                     + row.turn_after * b[1][2]
@@ -196,6 +199,7 @@ impl Impulses {
         weights: Weights,
         b: &[f64],
     ) {
+        // Wheels stand in the border, with a negative sign: their unknowns are velocities, not impulses.
         let first = self.joints.first_wheel();
         for (j, &inertia) in bodies.inertias().iter().enumerate() {
             let place = Place::Border(first + j);
@@ -217,6 +221,7 @@ impl Impulses {
     fn apply<S: Simd, const R: usize>(&mut self, w: Wide<S>, linkage: &Linkage, x: &mut [f64]) {
         let shapes = &linkage.shapes;
         for start in (0..linkage.series.links).step_by(Wide::<S>::COUNT) {
+            // A link is pushed by the joint at its beginning, and back by the one at its end.
             let mut impulse = [w.splat(0.0); 3];
             for p in 0..R {
                 let (row, next) = (self.rows[p].load(w, start), self.rows[p].load(w, start + 1));
@@ -238,19 +243,14 @@ impl Impulses {
     }
 }
 
-/// The solution as one call that is compiled for every kind of processor.
-struct Solution<'a, const R: usize, const C: usize, const B: usize> {
-    work: &'a mut Impulses,
-    step: Step<'a>,
-    x: &'a mut [f64],
-}
-
-impl<const R: usize, const C: usize, const B: usize> WithSimd for Solution<'_, R, C, B> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> bool {
-        self.work
-            .solve_on::<S, R, C, B>(Wide(simd), self.step, self.x)
+kernel!(
+    /// The solution; false if the equations are singular.
+    fn solution<'a, const R: usize, const C: usize, const B: usize, S: Simd>(
+        w: Wide<S>,
+        work: &'a mut Impulses,
+        step: Step<'a>,
+        x: &'a mut [f64],
+    ) -> bool {
+        work.solve_on::<S, R, C, B>(w, step, x)
     }
-}
+);

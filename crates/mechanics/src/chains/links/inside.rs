@@ -12,7 +12,7 @@ use crate::bodies::GroupBodies;
 use crate::chains::makeup::Makeup;
 use crate::chains::{Chain, Record};
 use crate::contact::{ContactMemory, Kept, LaneTally, MemoryLanes, Tally};
-use crate::joints::{Contacts, Element, Pins, touch, turned};
+use crate::joints::{Element, Pins, contacts, touch, turned};
 use crate::lanes::Wide;
 
 /// A chain of rigid links with its state, and the bodies beside it.
@@ -191,15 +191,15 @@ impl<'a> Inside<'a> {
         };
         let posture = &self.joint_state.posture;
         let (mut memory, mut pins) = (ContactMemory::default(), Pins::default());
-        let tally = registers.dispatch(Contacts {
-            sides: posture.sides(),
-            pairs: &linkage.pairs,
+        let tally = registers.dispatch(contacts(
+            posture.sides(),
+            &linkage.pairs,
             bearing,
-            known: &linkage.series.memory.pins,
-            memory: &mut memory,
-            pins: &mut pins,
-            dt: 0.0,
-        });
+            &linkage.series.memory.pins,
+            &mut memory,
+            &mut pins,
+            0.0,
+        ));
         let closed = (0..linkage.joints.len()).map(|joint| {
             let element = pins.element(joint, &linkage.joints[joint], bearing, posture.sides());
             element.as_ref().map(Contact::of)

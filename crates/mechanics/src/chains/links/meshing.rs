@@ -2,13 +2,12 @@
 
 use chaindrive_contact::Friction;
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Array, Moment};
-use pulp::{Simd, WithSimd};
+use chaindrive_integrate::{Array, Moment, kernel};
 
 use super::rates::LinkPins;
 use super::{JointState, Linkage, Posture};
 use crate::bodies::{RailContact, Surroundings};
-use crate::contact::{Contacts, Frame, Kept, Pressing, Rollers, Touch, Wrench};
+use crate::contact::{Contacts, Frame, Kept, Rollers, Touch, Wrench, pressing};
 use crate::energy::Flow;
 use crate::joints::{Element, Partner, rail_mount, wheel_mount};
 use crate::lanes::Wide;
@@ -54,18 +53,11 @@ impl Linkage {
                     self.roll(contacts, &frame, number, at, touch, joint_state)
                 }
                 RailContact::Plates(plates) => {
-                    let pressing = Pressing {
-                        plates,
-                        t: at.t,
-                        frame,
-                        pins: &mut LinkPins {
-                            joint_state,
-                            links: self.series.links,
-                        },
-                        yielding: 0.0,
-                        touch: &mut loads.rails[i],
-                    };
-                    self.series.registers.dispatch(pressing)
+                    let touch = &mut loads.rails[i];
+                    let links = self.series.links;
+                    let pins = &mut LinkPins { joint_state, links };
+                    let registers = self.series.registers;
+                    registers.dispatch(pressing(plates, at.t, frame, pins, 0.0, touch))
                 }
             };
             rates[Flow::GuideLoss as usize] += wrench.normal_loss;
@@ -75,33 +67,21 @@ impl Linkage {
     }
 }
 
-/// The contacts of one wheel or rail as one call that is compiled for every kind of processor.
-struct Touching<'a> {
-    contacts: &'a Contacts,
-    frame: &'a Frame,
-    t: f64,
-    rollers: Rollers<'a>,
-    touch: &'a mut Touch,
-}
-
-impl WithSimd for Touching<'_> {
-    type Output = Wrench;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(mut self, simd: S) -> Wrench {
-        let mut wrench = Wrench::default();
-        self.contacts.act(
-            Wide(simd),
-            self.t,
-            self.frame,
-            &mut self.rollers,
-            None,
-            self.touch,
-            &mut wrench,
-        );
+kernel!(
+    /// The contacts of one wheel or rail.
+    fn touching<'a, S: Simd>(
+        w: Wide<S>,
+        contacts: &'a Contacts,
+        frame: &'a Frame,
+        t: f64,
+        rollers: Rollers<'a>,
+        touch: &'a mut Touch,
+    ) -> Wrench {
+        let (mut rollers, mut wrench) = (rollers, Wrench::default());
+        contacts.act(w, t, frame, &mut rollers, None, touch, &mut wrench);
         wrench
     }
-}
+);
 
 impl Linkage {
     /// All contacts of the rollers with one wheel or rail.
@@ -125,26 +105,23 @@ impl Linkage {
         } else {
             idle.spin.clear();
         }
-        let wrench = self.series.registers.dispatch(Touching {
-            contacts,
-            frame,
-            t: at.t,
-            rollers: Rollers {
-                x: &posture.x,
-                y: &posture.y,
-                vx: &posture.vx,
-                vy: &posture.vy,
-                ax: &mut idle.ax,
-                ay: &mut idle.ay,
-                inverse_mass: &idle.inverse_mass,
-                spin: &idle.spin,
-                half_step: 0.0,
-            },
-            touch,
-        });
+        let rollers = Rollers {
+            x: &posture.x,
+            y: &posture.y,
+            vx: &posture.vx,
+            vy: &posture.vy,
+            ax: &mut idle.ax,
+            ay: &mut idle.ay,
+            inverse_mass: &idle.inverse_mass,
+            spin: &idle.spin,
+            half_step: 0.0,
+        };
+        let registers = self.series.registers;
+        let wrench = registers.dispatch(touching(contacts, frame, at.t, rollers, touch));
         contacts.for_each_slot(|slot, joint| {
             for side in 0..contacts.sides() {
                 let index = side * contacts.slots + slot;
+                // Every closed contact becomes an element between the body that bears the circle and the wheel or rail.
                 if !touch.state.is_closed(index) {
                     continue;
                 }

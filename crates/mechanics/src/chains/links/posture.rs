@@ -1,8 +1,7 @@
 //! Where the links and rollers of a linkage are, and how they move.
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Array, Moment};
-use pulp::{Simd, WithSimd};
+use chaindrive_integrate::{Array, Moment, kernel};
 use serde::{Deserialize, Serialize};
 
 use super::Linkage;
@@ -185,10 +184,7 @@ impl Linkage {
                 [*a, *b, *c] = *from;
             }
         }
-        self.series.registers.dispatch(Ends {
-            linkage: self,
-            posture,
-        });
+        self.series.registers.dispatch(link_ends(self, posture));
         self.pose_ends(at, posture);
         self.pose_rollers(at, posture);
     }
@@ -211,10 +207,8 @@ impl Linkage {
 
     fn pose_rollers(&self, at: Moment<'_>, posture: &mut Posture) {
         let joints = self.joints.len();
-        self.series.registers.dispatch(Circles {
-            on_after: &self.pairs.bush_after,
-            posture,
-        });
+        let registers = self.series.registers;
+        registers.dispatch(fixed_circles(&self.pairs.bush_after, posture));
         if let Some(free) = &self.free_rollers {
             for (joint, body) in free.body.iter().enumerate() {
                 let Some(body) = *body else { continue };
@@ -294,28 +288,20 @@ impl Linkage {
     }
 }
 
-/// The ends of all links, as one call that is compiled for every kind of processor.
-struct Ends<'a> {
-    linkage: &'a Linkage,
-    posture: &'a mut Posture,
-}
-
-impl WithSimd for Ends<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let w = Wide(simd);
-        let shapes = &self.linkage.shapes;
+kernel!(
+    /// The ends of all links.
+    fn link_ends<'a, S: Simd>(w: Wide<S>, linkage: &'a Linkage, posture: &'a mut Posture) {
+        let shapes = &linkage.shapes;
         let Posture {
             before,
             after,
             links,
             ..
-        } = self.posture;
+        } = posture;
         let [x, y, angle, vx, vy, spin] = links;
-        for start in (0..self.linkage.series.links).step_by(Wide::<S>::COUNT) {
+        for start in (0..linkage.series.links).step_by(Wide::<S>::COUNT) {
             let [x, y, vx, vy, spin] = [&x, &y, &vx, &vy, &spin].map(|all| w.load(all, start));
+            // Both ends of each link turn with it.
             let [s, c] = w.load(angle, start).sin_cos();
             // Link i begins at joint i and ends at the next.
             for (side, [arm_x, arm_y], joint) in [
@@ -336,21 +322,16 @@ impl WithSimd for Ends<'_> {
             }
         }
     }
-}
+);
 
-/// The circles of rollers that are fixed to their links, as one call that is compiled for every kind of processor.
-struct Circles<'a> {
-    /// One where the bush is on the side after, zero elsewhere.
-    on_after: &'a [f64],
-    posture: &'a mut Posture,
-}
-
-impl WithSimd for Circles<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let w = Wide(simd);
+kernel!(
+    /// The circles of rollers that are fixed to their links.
+    fn fixed_circles<'a, S: Simd>(
+        w: Wide<S>,
+        /// One where the bush is on the side after, zero elsewhere.
+        bush_after: &'a [f64],
+        posture: &'a mut Posture,
+    ) {
         let Posture {
             before,
             after,
@@ -359,9 +340,9 @@ impl WithSimd for Circles<'_> {
             vx,
             vy,
             ..
-        } = self.posture;
-        for start in (0..self.on_after.len()).step_by(Wide::<S>::COUNT) {
-            let on_after = w.load(self.on_after, start).greater(w.splat(0.0));
+        } = posture;
+        for start in (0..bush_after.len()).step_by(Wide::<S>::COUNT) {
+            let on_after = w.load(bush_after, start).greater(w.splat(0.0));
             for (to, after, before) in [
                 (&mut *x, &after.x, &before.x),
                 (&mut *y, &after.y, &before.y),
@@ -374,7 +355,7 @@ impl WithSimd for Circles<'_> {
             }
         }
     }
-}
+);
 
 /// A free roller, whose circle is about its centre of mass.
 pub(crate) fn free_part(body: usize, at: Moment<'_>) -> Part {

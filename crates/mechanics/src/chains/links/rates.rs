@@ -53,6 +53,7 @@ impl Linkage {
                 Partner::Body(body) => Some(body),
                 Partner::Ground | Partner::Mount(_) => None,
             };
+            // Each contact counts on the bodies of both sides, by the share that bounds what the two do together.
             for (body, arm, lever) in [
                 (element.a, sides[0], element.lever_a),
                 (other, sides[1], element.lever_b),
@@ -69,6 +70,7 @@ impl Linkage {
             }
         }
         let sticks = self.sticks();
+        // The stiffest body: with what sticks held by springs, and with all of it sliding.
         let [mut squared, mut damping, mut sliding] =
             sums.iter().fold([0.0_f64; 3], |[k, d, s], sum| {
                 let own = largest(&sum[0]);
@@ -80,6 +82,7 @@ impl Linkage {
                 [k.max(stuck), d.max(largest(&sum[1])), s.max(own)]
             });
         joint_state.sums = sums;
+        // What is beside the contacts: joints that close gently, wheels, torques in joints, drag, and ideal joints under tension.
         let mut stiffest = self.resting();
         for [rim, drag] in joint_state.wheel_rates(around) {
             stiffest = stiffest.max(RIM_SHARE * rim);

@@ -12,9 +12,9 @@ mod ring;
 mod sections;
 
 use chaindrive_geometry::Vector;
-use chaindrive_integrate::Array;
+use chaindrive_integrate::{Array, kernel};
 use nalgebra::Matrix3;
-use pulp::{Simd, WithSimd};
+use pulp::Simd;
 
 use super::by_link::ByLink;
 use super::posture::Posture;
@@ -72,11 +72,8 @@ impl Reactions {
             [xx[place], yx[place], yy[place]] = [block[(0, 0)], block[(1, 0)], block[(1, 1)]];
             [tx[place], ty[place], tt[place]] = [block[(2, 0)], block[(2, 1)], block[(2, 2)]];
         }
-        let inverse = &mut self.inverse;
-        let sound = linkage
-            .series
-            .registers
-            .dispatch(Invert { inverse, linkage });
+        let registers = linkage.series.registers;
+        let sound = registers.dispatch(inverted(&mut self.inverse, linkage));
         for values in &mut self.inverse {
             values[0] = if linkage.series.is_closed() {
                 values[linkage.series.links]
@@ -112,12 +109,8 @@ impl Reactions {
         }
         self.sections
             .lay_out(linkage.joints.len(), linkage.series.is_closed(), SINGULAR);
-        self.sound = linkage.series.registers.dispatch(Factor {
-            reactions: self,
-            linkage,
-            posture,
-            inertia,
-        });
+        let registers = linkage.series.registers;
+        self.sound = registers.dispatch(factored(self, linkage, posture, inertia));
         self.sound
     }
 
@@ -150,6 +143,7 @@ impl Reactions {
         let [right_x, right_y] = &mut self.right;
         for start in (0..linkage.joints.len()).step_by(Wide::<S>::COUNT) {
             let [bx, by, ax, ay] = arms(w, posture, start);
+            // Link i − 1 ends at joint i, and link i begins there; links are counted from one on.
             let before = load(w, moved, start);
             let after = load(w, moved, start + 1);
             // P = r + φ ẑ × arm
@@ -211,26 +205,23 @@ impl Reactions {
     }
 }
 
-/// Inverses of the blocks, in their place.
-struct Invert<'a> {
-    inverse: &'a mut [Array; 6],
-    linkage: &'a Linkage,
-}
-
-impl WithSimd for Invert<'_> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> bool {
-        let w = Wide(simd);
-        let (links, inverse) = (self.linkage.series.links, self.inverse);
+kernel!(
+    /// Inverses of the blocks, in their place; false if one is singular.
+    fn inverted<'a, S: Simd>(
+        w: Wide<S>,
+        inverse: &'a mut [Array; 6],
+        linkage: &'a Linkage,
+    ) -> bool {
+        let links = linkage.series.links;
         let one = w.splat(1.0);
         let mut least = one;
         for link in (0..links).step_by(Wide::<S>::COUNT) {
+            // [a b c; b d e; c e f]
             let [a, b, d, c, e, f] = blocks(w, inverse, link + 1);
             // The adjoint of a symmetric block over its determinant
             let [xx, yx, tx] = [d * f - e * e, c * e - b * f, b * e - c * d];
             let determinant = a * xx + b * yx + c * tx;
+            // Lanes beyond the last link have no block: one stands for their determinant.
             let within = w.first(links - link);
             least = least.min(within.select(determinant.abs(), one));
             let scale = within.select(determinant, one).recip();
@@ -241,28 +232,17 @@ impl WithSimd for Invert<'_> {
         }
         least.smallest() > 0.0
     }
-}
+);
 
-/// The blocks of the joints and their factors, as one call that is compiled for every kind of processor.
-struct Factor<'a> {
-    reactions: &'a mut Reactions,
-    linkage: &'a Linkage,
-    posture: &'a Posture,
-    inertia: Inertia,
-}
-
-impl WithSimd for Factor<'_> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> bool {
-        let w = Wide(simd);
-        let Self {
-            reactions,
-            linkage,
-            posture,
-            inertia,
-        } = self;
+kernel!(
+    /// The blocks of the joints and their factors; false if they are singular.
+    fn factored<'a, S: Simd>(
+        w: Wide<S>,
+        reactions: &'a mut Reactions,
+        linkage: &'a Linkage,
+        posture: &'a Posture,
+        inertia: Inertia,
+    ) -> bool {
         match inertia {
             Inertia::OfLinks => reactions.fill::<S, true>(w, linkage, posture),
             Inertia::OfBlocks => reactions.fill::<S, false>(w, linkage, posture),
@@ -272,7 +252,7 @@ impl WithSimd for Factor<'_> {
         reactions.sections.take_in(own, &reactions.coupling);
         reactions.sections.factor(w)
     }
-}
+);
 
 impl Reactions {
     #[inline(always)]
@@ -289,6 +269,7 @@ impl Reactions {
                 w.load(&posture.before.arm_x, start + 1),
                 w.load(&posture.before.arm_y, start + 1),
             ];
+            // How the links before and after the joints give way: by their masses, or by what an implicit step has made of them.
             let (before, after) = if FREE {
                 (
                     Yielding::free(w, &linkage.shapes, start),
@@ -300,11 +281,13 @@ impl Reactions {
                     Yielding::Held(blocks(w, &self.inverse, start + 1)),
                 )
             };
+            // At a joint both links give way; the link after it hands on what the next joint does.
             let first = before.between([bx, by], [bx, by]);
             let second = after.between([ax, ay], [ax, ay]);
             let across = after.between(next, [ax, ay]);
             let present = linkage.pairs.present(w, start);
             let both = linkage.pairs.both_present(w, start);
+            // Rows of joints without a second side say λ = 0.
             for (own, (k, empty)) in self.own.iter_mut().zip([(0, one), (2, zero), (3, one)]) {
                 present
                     .select(first[k] + second[k], empty)
@@ -383,25 +366,21 @@ fn blocks<S: Simd>(w: Wide<S>, from: &[Array; 6], place: usize) -> [Lane<S>; 6] 
 mod tests {
     use chaindrive_integrate::Registers;
     use nalgebra::{DMatrix, DVector};
-    use pulp::Scalar128b;
+    use pulp::{Scalar128b, WithSimd};
 
     use super::*;
 
-    struct Solved<'a> {
-        sections: &'a mut Sections,
-        right: &'a mut [Array; 2],
-    }
-
-    impl WithSimd for Solved<'_> {
-        type Output = bool;
-
-        #[inline(always)]
-        fn with_simd<S: Simd>(self, simd: S) -> bool {
-            let sound = self.sections.factor(Wide(simd));
-            self.sections.solve(Wide(simd), self.right);
+    kernel!(
+        fn solved<'a, S: Simd>(
+            w: Wide<S>,
+            sections: &'a mut Sections,
+            right: &'a mut [Array; 2],
+        ) -> bool {
+            let sound = sections.factor(w);
+            sections.solve(w, right);
             sound
         }
-    }
+    );
 
     /// Rings and rows of two-by-two blocks, of any length, on lanes of any width, against the dense system.
     #[test]
@@ -411,10 +390,10 @@ mod tests {
             state = (state * 997.13 + 0.123).fract();
             state - 0.5
         };
-        let widths: [fn(Solved<'_>) -> bool; 3] = [
-            |solved| solved.with_simd(pulp::Scalar),
-            |solved| solved.with_simd(Scalar128b),
-            |solved| Registers::in_use().dispatch(solved),
+        let widths: [fn(&mut Sections, &mut [Array; 2]) -> bool; 3] = [
+            |sections, right| solved(sections, right).with_simd(pulp::Scalar),
+            |sections, right| solved(sections, right).with_simd(Scalar128b),
+            |sections, right| Registers::in_use().dispatch(solved(sections, right)),
         ];
         let mut sections = Sections::default();
         for (count, closed) in (1..40).flat_map(|count| [(count, false), (count, true)]) {
@@ -457,9 +436,7 @@ mod tests {
                 let mut found = right.clone();
                 sections.lay_out(count, closed, SINGULAR);
                 sections.take_in([&own[0], &own[1], &own[2]], &coupling);
-                let right = &mut found;
-                let sections = &mut sections;
-                assert!(solve(Solved { sections, right }));
+                assert!(solve(&mut sections, &mut found));
                 for i in 0..2 * count {
                     let error = (found[i % 2][i / 2] - exact[i]).abs();
                     assert!(error < 1e-13, "{count}, {closed}, {i}: {error:e}");
@@ -474,9 +451,8 @@ mod tests {
                 all.fill(0.0);
             }
             sections.take_in([&own[0], &own[1], &own[2]], &coupling);
-            let (sections, mut right) = (&mut sections, right);
-            let right = &mut right;
-            assert!(!widths[2](Solved { sections, right }), "{count}, {closed}");
+            let mut right = right;
+            assert!(!widths[2](&mut sections, &mut right), "{count}, {closed}");
         }
     }
 }

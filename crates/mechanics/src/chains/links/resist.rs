@@ -1,7 +1,7 @@
 //! Torques between rigid links: friction of ideal joints, and viscous damping of all.
 
-use chaindrive_integrate::Moment;
-use pulp::{Simd, WithSimd};
+use chaindrive_integrate::{Moment, kernel};
+use pulp::Simd;
 
 use super::hinge::Hinges;
 use super::posture::Posture;
@@ -32,13 +32,9 @@ impl Linkage {
             }
             Joining::Hinges(_) | Joining::Clearance(_) => {}
         }
-        let losses = self.series.registers.dispatch(Torques {
-            joints,
-            posture: &joint_state.posture,
-            normal: &joint_state.normal,
-            t: at.t,
-            found: &mut *found,
-        });
+        let (posture, normal) = (&joint_state.posture, &joint_state.normal);
+        let registers = self.series.registers;
+        let losses = registers.dispatch(torques(joints, posture, normal, at.t, &mut *found));
         losses.add_to(rates);
         let torque = &mut found.torque;
         if self.series.is_closed() {
@@ -77,31 +73,26 @@ impl Linkage {
     }
 }
 
-/// The torques of all joints, as one call that is compiled for every kind of processor.
-struct Torques<'a> {
-    joints: &'a Joints,
-    posture: &'a Posture,
-    normal: &'a [f64],
-    t: f64,
-    found: &'a mut Resistance,
-}
-
-impl WithSimd for Torques<'_> {
-    type Output = JointLosses;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> JointLosses {
-        let w = Wide(simd);
-        let n = self.normal.len();
-        let Posture { before, after, .. } = self.posture;
+kernel!(
+    /// The torques of all joints.
+    fn torques<'a, S: Simd>(
+        w: Wide<S>,
+        joints: &'a Joints,
+        posture: &'a Posture,
+        normal: &'a [f64],
+        t: f64,
+        found: &'a mut Resistance,
+    ) -> JointLosses {
+        let n = normal.len();
+        let Posture { before, after, .. } = posture;
         let spins = Spins {
             before: w.lanes(&before.spin[..n]),
             after: w.lanes(&after.spin[..n]),
-            normal: w.lanes(self.normal),
+            normal: w.lanes(normal),
         };
-        self.joints.resist(w, self.t, self.found, &spins)
+        joints.resist(w, t, found, &spins)
     }
-}
+);
 
 /// Angular speeds of the links before and after every joint, and the force on its pin.
 struct Spins<'a, S: Simd> {

@@ -31,6 +31,7 @@ pub(in crate::chains) fn act<S: Simd>(
 ) -> JointLosses {
     let count = links.count;
     let power = torques(joints, w, t, links, turning, found);
+    // What acts on the roller after the last link is found by the difference to what stood there before.
     let behind = [rollers.ax[count], rollers.ay[count]];
     pass_on(w, &found.torque, &turning.across, rollers);
     if links.closed {
@@ -58,11 +59,13 @@ pub(in crate::chains) fn torques<S: Simd>(
         tension,
         across,
     } = turning;
+    // The link before the first joint is the last one.
     if links.closed {
         for values in [&mut *rate, &mut *tension] {
             values[LANES - 1] = values[LANES - 1 + count];
         }
     }
+    // Beyond the last link nothing is pushed: what stands there is of no link.
     for values in across.iter_mut() {
         values[count..].fill(0.0);
     }

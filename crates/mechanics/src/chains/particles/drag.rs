@@ -39,6 +39,7 @@ impl Drag {
         let n = self.0.len();
         let count = links.count;
         let behind = [rollers.ax[count], rollers.ay[count]];
+        // Both ends of the links: the same rows, the second ones read one entry later.
         let columns = [rollers.x, rollers.y, rollers.vx, rollers.vy];
         let [x, y, vx, vy] = columns.map(|values| w.lanes(&values[..n]));
         let [x_next, y_next, vx_next, vy_next] = columns.map(|values| w.lanes(&values[1..=n]));
@@ -54,6 +55,7 @@ impl Drag {
             let (dx, dy) = (x_next.get(i) - x.get(i), y_next.get(i) - y.get(i));
             let (ux, uy) = (vx_next.get(i) - vx.get(i), vy_next.get(i) - vy.get(i));
             let (sx, sy) = (vx_next.get(i) + vx.get(i), vy_next.get(i) + vy.get(i));
+            // b/ℓ
             let scale = coefficient.get(i) * (dx * dx + dy * dy).inverse_root();
             // ½ d × w, and (d × u)/12
             let moving = quarter * (dx * sy - dy * sx);

@@ -9,7 +9,7 @@ use super::{Particles, articulation};
 use crate::bodies::{RailContact, Surroundings};
 use crate::chains::kernel::Kernel;
 use crate::chains::particles::Work;
-use crate::contact::{Drawn, OfPins, PlatePins, Pressing, Rollers};
+use crate::contact::{Drawn, OfPins, PlatePins, Rollers, pressing};
 use crate::energy::Flow;
 use crate::joints::Resistance;
 use crate::lanes::Wide;
@@ -124,6 +124,7 @@ pub(in crate::chains) fn touch_bodies<S: Simd>(
         } else {
             [Flow::GuideLoss, Flow::GuideFriction]
         };
+        // Losses of teeth and guides are told apart.
         rates[loss as usize] += wrench.normal_loss;
         rates[friction as usize] += wrench.friction_loss;
     }
@@ -144,14 +145,15 @@ pub(in crate::chains) fn plate_forces<S: Simd>(
         let RailContact::Plates(plates) = &on.contact else {
             continue;
         };
-        let wrench = w.call(Pressing {
+        // A call of its own: the kernel stays short where no plate touches.
+        let wrench = w.call(pressing(
             plates,
             t,
-            frame: *frame,
-            pins: &mut *pins,
-            yielding: around.bodies.rails[on.rail].mobility,
-            touch: &mut loads.rails[i],
-        });
+            *frame,
+            &mut *pins,
+            around.bodies.rails[on.rail].mobility,
+            &mut loads.rails[i],
+        ));
         rates[Flow::GuideLoss as usize] += wrench.normal_loss;
         rates[Flow::GuideFriction as usize] += wrench.friction_loss;
         loads.rail_wrenches[i] = wrench;
@@ -219,6 +221,7 @@ impl Kernel for Particles {
         let mut rollers = self.view(at, around.prediction, a);
         let gravity = [around.bodies.gravity.x, around.bodies.gravity.y];
         let links = &self.links;
+        // Links first: they set accelerations, and all others add to them.
         let loss = if let Some(joints) = &self.series.joints {
             let loss = links.act::<S, true>(w, &mut rollers, gravity, turning);
             let found = (turning, &mut found.resistance);

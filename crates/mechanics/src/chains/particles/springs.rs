@@ -115,9 +115,11 @@ impl Links {
         gravity: [f64; 2],
         turning: &mut Turning,
     ) -> f64 {
+        // All rows of one length: the compiler drops the checks of places in the loop.
         let n = self.rest.len();
         let [rest, damping, inverse_mass] =
             [&self.rest, &self.damping, rollers.inverse_mass].map(|values| w.lanes(&values[..n]));
+        // Link i begins at roller i and ends at the next: its second end is the same row, read one entry later.
         let columns = [rollers.x, rollers.y, rollers.vx, rollers.vy];
         let [x, y, vx, vy] = columns.map(|values| w.lanes(&values[..n]));
         let [x_next, y_next, vx_next, vy_next] = columns.map(|values| w.lanes(&values[1..=n]));
@@ -126,6 +128,7 @@ impl Links {
         let [gx, gy] = gravity.map(|g| w.splat(g));
         let zero = w.splat(0.0);
         let (mut loss, mut before) = (zero, [zero; 2]);
+        // Joints that resist ask for the turning and the tension of every link; other chains write none of it.
         let written = if ARTICULATED {
             turning.make_room(self);
             n
@@ -143,11 +146,13 @@ impl Links {
         let [across_x, across_y] = &mut turning.across;
         let mut across =
             [across_x, across_y].map(|values| Wide::<S>::lanes_mut(&mut values[..written]));
+        // Lane by lane of links. The pull of the last link of a lane is carried on to the first roller of the next.
         for i in 0..n / Wide::<S>::COUNT {
             let dx = x_next.get(i) - x.get(i);
             let dy = y_next.get(i) - y.get(i);
             let ux = vx_next.get(i) - vx.get(i);
             let uy = vy_next.get(i) - vy.get(i);
+            // Length by one estimate of the inverse root, which the pull needs as well.
             let square = (dx * dx).plus(dy, dy);
             let inverse = square.inverse_root();
             let length = square * inverse;

@@ -13,9 +13,9 @@
 
 use chaindrive_contact::Friction;
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Array, Moment, Weights};
+use chaindrive_integrate::{Array, Moment, Weights, kernel};
 use nalgebra::{DMatrix, DVector};
-use pulp::{Simd, WithSimd};
+use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
 use super::{AFTER, BEFORE, Points, ROLLERS, Work};
@@ -102,6 +102,7 @@ impl Points {
         at: Moment<'_>,
         found: &mut Work,
     ) {
+        // One entry along the normal of every closed contact, and one across it where it rubs.
         let rubs = contacts.surface.friction != Friction::None;
         found.mounts.push(coordinates(mount));
         let moves = moves(mount);
@@ -157,12 +158,8 @@ impl Points {
             beside,
             padded(self.series.rollers),
         );
-        self.series.registers.dispatch(Joints {
-            chain: self,
-            weights,
-            found,
-            x: own,
-        });
+        let registers = self.series.registers;
+        registers.dispatch(joints(self, weights, found, own));
         self.copy_ghosts(own);
         // M x: what the contacts lose, the bodies receive.
         let inertias = bodies.inertias();
@@ -178,6 +175,7 @@ impl Points {
                 }
             }
         }
+        // What bodies have by themselves, such as the springs of supports, is solved after the contacts, and only where there is any.
         let mut alone = true;
         bodies.each_own(weights, |_, weighted| alone &= weighted == 0.0);
         alone || found.own.solve(bodies, weights, beside)
@@ -247,6 +245,7 @@ impl Pressed {
         bodies: &[f64],
         count: usize,
     ) {
+        // Sums over the contacts of each roller, whose bodies are taken where they would go without the chain.
         for values in self.matrix.iter_mut().chain(&mut self.right) {
             values.clear();
             values.resize(count, 0.0);
@@ -270,26 +269,15 @@ impl Pressed {
     }
 }
 
-/// The equations of all joints as one call, compiled for every kind of processor.
-struct Joints<'a> {
-    chain: &'a Points,
-    weights: Weights,
-    found: &'a Work,
-    x: &'a mut [f64],
-}
-
-impl WithSimd for Joints<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let w = Wide(simd);
-        let Self {
-            chain,
-            weights,
-            found,
-            x,
-        } = self;
+kernel!(
+    /// The equations of all joints.
+    fn joints<'a, S: Simd>(
+        w: Wide<S>,
+        chain: &'a Points,
+        weights: Weights,
+        found: &'a Work,
+        x: &'a mut [f64],
+    ) {
         let count = padded(chain.series.rollers);
         let n = chain.series.stride;
         let Work {
@@ -322,6 +310,7 @@ impl WithSimd for Joints<'_> {
         let [zero, half, one] = [0.0, 0.5, 1.0].map(|number| w.splat(number));
         for i in 0..count / Wide::<S>::COUNT {
             let start = i * Wide::<S>::COUNT;
+            // What is known of the roller and the ends before and after; of these one has the bush and the other the pin.
             let b_r = [w.load(x, start), w.load(x, n + start)];
             let before = [w.load(x, 2 * n + start), w.load(x, 3 * n + start)];
             let after = [w.load(x, 4 * n + start), w.load(x, 5 * n + start)];
@@ -336,6 +325,7 @@ impl WithSimd for Joints<'_> {
             let sense = is_after.select(-one, one);
             let n1 = [sense * pin_x.get(i), sense * pin_y.get(i)];
             let n2 = [bush_x.get(i), bush_y.get(i)];
+            // D of pin in bush and bush in roller
             let d1 = c * pin_d.get(i) + k * pin_k.get(i);
             let d2 = c * bush_d.get(i) + k * bush_k.get(i);
             let (pressed_x, pressed_y) = (matrix_xx.get(i), matrix_yy.get(i));
@@ -385,7 +375,7 @@ impl WithSimd for Joints<'_> {
             (after[1] + is_after.select(on_bush[1], on_pin[1])).store(x, 5 * n + start);
         }
     }
-}
+);
 
 /// p₁ = D₁ w₁/(1 + D₁ (1/m_p + 1/m_b)) of a pin in a bush that touches nothing else.
 #[inline(always)]

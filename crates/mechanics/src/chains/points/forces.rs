@@ -59,12 +59,14 @@ impl Points {
         }
         let [rest, stiffness, damping] =
             [&links.rest, &links.stiffness, &links.damping].map(|values| w.lanes(values));
+        // A link goes from the end after its first joint to the end before its second.
         let first = |values| [0, 1].map(|axis| w.lanes(&self.column(values, AFTER, axis)[..n]));
         let second = |values| [0, 1].map(|axis| w.lanes(&self.column(values, BEFORE, axis)[1..=n]));
         let ([x, y], [vx, vy]) = (first(at.q), first(at.v));
         let ([x_next, y_next], [vx_next, vy_next]) = (second(at.q), second(at.v));
         let im_before = w.lanes(&self.inverse_masses[BEFORE][..n]);
         let im_after = w.lanes(&self.inverse_masses[AFTER][..n]);
+        // Links do not pull at rollers, which begin with their weight alone.
         let (on_rollers, ends) = a.split_at_mut(2 * self.series.stride);
         for (column, g) in on_rollers.chunks_exact_mut(self.series.stride).zip(gravity) {
             column.fill(g);
@@ -91,6 +93,7 @@ impl Points {
         for i in 0..n / Wide::<S>::COUNT {
             let (dx, dy) = (x_next.get(i) - x.get(i), y_next.get(i) - y.get(i));
             let (ux, uy) = (vx_next.get(i) - vx.get(i), vy_next.get(i) - vy.get(i));
+            // 1/ℓ, and ℓ = ℓ²/ℓ
             let square = dx * dx + dy * dy;
             let inverse = square.inverse_root();
             // ℓ̇ = d·u/ℓ
@@ -109,6 +112,7 @@ impl Points {
                 across_x.set(i, -dy * inverse_square);
                 across_y.set(i, dx * inverse_square);
             }
+            // The first end is drawn on and the second back; the pull at the first end of the next lane is carried on.
             let (im_a, im_b) = (im_after.get(i), im_before.get(i));
             ax.set(i, pull[0] * im_a + gx);
             ay.set(i, pull[1] * im_a + gy);
@@ -133,6 +137,7 @@ impl Points {
         let im_before = w.lanes(&self.inverse_masses[BEFORE][..n]);
         let im_after = w.lanes(&self.inverse_masses[AFTER][..n]);
         let ends = &mut a[2 * self.series.stride..];
+        // The entry after the last link is the first joint of a closed chain: what is added there is handed on below.
         let count = self.links.count;
         let behind = [ends[count], ends[self.series.stride + count]];
         let mut columns = ends.chunks_exact_mut(self.series.stride);
@@ -177,6 +182,7 @@ impl Points {
         let memory = &mut joints.memory;
         memory.pins.resize(count);
         memory.bushes.resize(count);
+        // Two contacts a joint: the pin in its bush, and the bush in its roller.
         let mut of_pins = MemoryLanes::new(w, &self.series.memory.pins, &mut memory.pins, count);
         let mut of_bushes =
             MemoryLanes::new(w, &self.series.memory.bushes, &mut memory.bushes, count);
@@ -200,11 +206,13 @@ impl Points {
         let zero = w.splat(0.0);
         let half = w.splat(0.5);
         for i in 0..count / Wide::<S>::COUNT {
+            // Lanes beyond the last joint hold nothing.
             let present = w.first(self.series.rollers.saturating_sub(i * Wide::<S>::COUNT));
             let (before_x, before_y) = (bx.get(i), by.get(i));
             let (before_vx, before_vy) = (bvx.get(i), bvy.get(i));
             let (after_x, after_y) = (ax.get(i), ay.get(i));
             let (after_vx, after_vy) = (avx.get(i), avy.get(i));
+            // Pin in bush: the offset of the end after the joint from the end before it, whichever has the pin.
             let apart = Apart {
                 offset: [after_x - before_x, after_y - before_y],
                 rate: [after_vx - before_vx, after_vy - before_vy],
@@ -218,6 +226,7 @@ impl Points {
             let (pin_x, pin_y) = (grip.force * grip.normal[0], grip.force * grip.normal[1]);
             pins.set(i, &grip);
 
+            // Bush in roller: the bush belongs to the inner link, on this or that side of the joint.
             let is_after = bush_after.get(i).greater(half);
             let apart = Apart {
                 offset: [
@@ -238,6 +247,8 @@ impl Points {
             let (bush_x, bush_y) = (grip.force * grip.normal[0], grip.force * grip.normal[1]);
             bushes.set(i, &grip);
 
+            // Every contact pushes its two bodies apart: the end before gets +F₁ of the pin, the end after −F₁, the roller +F₂ of the bush,
+            // and the end that has the bush −F₂.
             let (m_r, m_b, m_a) = (im_roller.get(i), im_before.get(i), im_after.get(i));
             let after_bush_x = is_after.select(bush_x, zero);
             let after_bush_y = is_after.select(bush_y, zero);
@@ -349,6 +360,7 @@ impl Points {
 /// p = (λ − a₀)((λ − a₁)(λ − a₂) − b₁²) − b₀² (λ − a₂)
 /// ```
 fn largest([a0, a1, a2]: [f64; 3], [b0, b1]: [f64; 2]) -> f64 {
+    // Begins at the bound of Gershgorin, which is above all eigenvalues.
     let rows = [a0 + b0, a1 + b0 + b1, a2 + b1];
     let mut value = rows.into_iter().fold(0.0, f64::max);
     for _ in 0..6 {
@@ -434,6 +446,7 @@ impl Kernel for Points {
             articulation::torques(joints, w, at.t, &self.links, turning, resistance).add_to(rates);
             self.turn(w, a, &resistance.torque, turning);
         }
+        // Then what joints do to links and rollers, and at last what stands around the chain.
         let tallies = self.bear(w, at, a, work);
         rates[Flow::JointLoss as usize] += tallies[0].normal_loss;
         rates[Flow::RollerLoss as usize] += tallies[1].normal_loss;

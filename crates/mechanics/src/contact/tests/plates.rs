@@ -7,7 +7,7 @@ use pulp::WithSimd;
 
 use super::*;
 
-use crate::contact::{Places, PlateContact, Pressing, Rollers};
+use crate::contact::{Places, PlateContact, Rollers, pressing};
 use crate::lanes::padded;
 use crate::profile::RailFace;
 use crate::surface::Surface;
@@ -201,14 +201,8 @@ fn lanes_of_plates_press_as_plates_one_by_one() {
                     thrust.fill(0.0);
                 }
                 let mut touch = Touch::default();
-                let press = Pressing {
-                    plates: &plates,
-                    t: 1e-6,
-                    frame,
-                    pins: &mut slack.rollers(),
-                    yielding: 0.0,
-                    touch: &mut touch,
-                };
+                let pins = &mut slack.rollers();
+                let press = pressing(&plates, 1e-6, frame, pins, 0.0, &mut touch);
                 let wrench = match width {
                     0 => Registers::in_use().dispatch(press),
                     1 => press.with_simd(pulp::Scalar128b),
@@ -260,14 +254,14 @@ fn no_plate_touches_unseen() {
         rested += plates.memory.wake.iter().filter(|wake| **wake > t).count();
         slack.thrust[0].fill(0.0);
         slack.thrust[1].fill(-600.0);
-        Registers::in_use().dispatch(Pressing {
-            plates: &plates,
+        Registers::in_use().dispatch(pressing(
+            &plates,
             t,
-            frame: Frame::fixed(),
-            pins: &mut slack.rollers(),
-            yielding: 0.0,
-            touch: &mut touch,
-        });
+            Frame::fixed(),
+            &mut slack.rollers(),
+            0.0,
+            &mut touch,
+        ));
         std::mem::swap(&mut plates.memory, &mut touch);
         plates.accepted = t;
         let rollers = slack.rollers();

@@ -84,6 +84,7 @@ impl Local {
             .extend_from_slice(&self.starts[..linkage.series.links]);
         self.lines
             .resize(self.starts[linkage.series.links], Line::EMPTY);
+        // Every contact into the place of its link, as a row along its normal and one along its tangent.
         for element in &joint_state.elements {
             let levers = [element.lever_a, element.lever_b];
             let rows = [(element.normal, [0.0; 2]), (element.tangent(), levers)];
@@ -129,6 +130,7 @@ impl Local {
             let factors = &mut self.factors[begin..];
             let (here, rest) = around.split_at_mut(count);
             around = rest;
+            // L, and C with the right-hand side behind it.
             for (i, line) in lines.iter().enumerate() {
                 for (j, other) in lines[..=i].iter().enumerate() {
                     factors[i * count + j] = line.times(other);
@@ -169,6 +171,7 @@ impl Local {
             if count == 0 {
                 continue;
             }
+            // What joints and wheels have come to gives the impulses of the contacts, and these push the bodies.
             let found = joints.around::<R, C>(link, linkage.joint_behind(link));
             let (here, rest) = around.split_at_mut(count);
             around = rest;
@@ -196,6 +199,7 @@ fn eliminate<const C: usize>(
 ) -> bool {
     let (factors, here) = (&mut factors[..count * count], &mut here[..count]);
     for i in 0..count {
+        // Row by row: the pivot, the rows below it, and what the row gives to the columns around.
         let pivot = factors[i * count + i];
         if pivot.is_nan() || pivot <= 0.0 {
             return false;

@@ -171,6 +171,7 @@ impl Tridiagonal {
         second: usize,
         sum: &[[f64; C]; C],
     ) {
+        // Columns: rows of the first joint, of the second, wheels, right-hand side.
         let wheels = self.border - self.held;
         let known = 2 * R + wheels;
         if first >= self.count || second >= self.count {
@@ -286,6 +287,7 @@ impl Tridiagonal {
 
     #[inline(always)]
     fn eliminate_rows<const B: usize>(&mut self, corner: &mut [[f64; B]; B]) -> bool {
+        // Two eliminations towards the middle, by turns: neither waits for the other.
         let middle = self.count / 2;
         let mut sound = true;
         for k in 0..=middle {
@@ -308,6 +310,7 @@ impl Tridiagonal {
         into: Option<(usize, usize)>,
         corner: &mut [[f64; B]; B],
     ) -> bool {
+        // The pivot, which is positive in a quasi-definite matrix.
         let inverse = 1.0 / self.own[0][joint];
         if inverse.is_nan() || inverse <= 0.0 {
             return false;
@@ -317,6 +320,7 @@ impl Tridiagonal {
         let here = rows[joint];
         // D⁻¹ times everything beside.
         let scaled = here.map(|here| inverse * here);
+        // The border loses what this row gives it.
         for (corner, own) in corner.iter_mut().zip(here) {
             for (corner, scaled) in corner.iter_mut().zip(scaled) {
                 *corner += own * scaled;
@@ -325,6 +329,7 @@ impl Tridiagonal {
         let Some((neighbour, coupling)) = into else {
             return true;
         };
+        // So does the neighbour that is left, and its share of the border.
         let between = self.coupling[0][coupling];
         let factor = between * inverse;
         self.coupling[0][coupling] = factor;
@@ -352,6 +357,7 @@ impl Tridiagonal {
         if !self.sections.factor(w) {
             return false;
         }
+        // One solution for every column of the border and the right-hand side, and its product with all columns.
         let joints = self.beside.as_chunks::<B>().0.as_chunks::<2>().0;
         self.columns.resize_with(self.border + 1, Default::default);
         for (j, column) in self.columns.iter_mut().enumerate() {

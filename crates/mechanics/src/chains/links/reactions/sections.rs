@@ -125,6 +125,7 @@ impl Sections {
             let mut block = load(w, &own, lane);
             let mut beside = load(w, &self.entering[0], lane);
             let mut corner = [w.splat(0.0); 3];
+            // Each row is eliminated into the next one of its section, and into the last row of the section before.
             let following = rows.len();
             for i in 0..following {
                 let whole = load(w, &own, lane);
@@ -149,6 +150,7 @@ impl Sections {
                     beside = sum(beside, load(w, &self.entering[1], lane));
                 }
             }
+            // What is left of the last rows makes up the ring, one by one.
             let whole = load(w, &last.own, lane);
             let whole = (whole[0] + whole[2]).numbers();
             let [a, b, d] = block.map(Lane::numbers);
@@ -182,6 +184,7 @@ impl Sections {
         };
         let mut corners = [[0.0; LANES]; 2];
         for lane in (0..LANES).step_by(Wide::<S>::COUNT) {
+            // Forward: each row hands its share of the right-hand side on to the next, and to the last row of the section before.
             let mut right = [w.splat(0.0); 2];
             let mut corner = [w.splat(0.0); 2];
             for row in rows.iter_mut() {
@@ -209,6 +212,7 @@ impl Sections {
             let before = (section + count - 1) % count;
             self.ring.right[before] -= Vector::new(corners[0][section], corners[1][section]);
         }
+        // The last rows are known from here on; each stands at the end of its section and before the next one.
         self.ring.solve();
         let mut before = [[0.0; LANES]; 2];
         for section in 0..count {
@@ -219,6 +223,7 @@ impl Sections {
             }
         }
         for lane in (0..LANES).step_by(Wide::<S>::COUNT) {
+            // Backward: each row from the next one, and from the last row of the section before.
             let mut found = load(w, &last.right, lane);
             let before = load(w, &before, lane);
             for row in rows.iter_mut().rev() {
