@@ -10,7 +10,6 @@
 
 mod duty;
 mod reason;
-mod rules;
 
 use std::fmt;
 
@@ -21,8 +20,7 @@ use crate::summary::{Ledger, Steadiness, Summary};
 use crate::{Channel, RanIn, Simulation};
 
 pub(crate) use duty::{ALIGNED, ALIGNED_FAST};
-pub use reason::Reason;
-pub use rules::Rule;
+pub use reason::{Reason, Rule};
 
 /// How far a result can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -285,10 +285,12 @@ fn specimens() -> Vec<Reason> {
             every: 1e-2,
             needed: 5e-3,
         },
-        Reason::MotionsFight(Fight {
-            sprockets: ["a", "b"].map(str::to_owned),
-            teeth: 3.0,
-        }),
+        Reason::MotionsFight {
+            fight: Fight {
+                sprockets: ["a", "b"].map(str::to_owned),
+                teeth: 3.0,
+            },
+        },
         Reason::NotEstimated {
             why: "switched off".to_owned(),
         },
