@@ -42,6 +42,7 @@ pub mod scene;
 mod seal;
 mod sheet;
 mod simulate;
+mod statistic;
 mod stepping;
 mod summary;
 pub mod sweep;

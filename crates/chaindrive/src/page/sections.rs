@@ -327,7 +327,7 @@ impl Told<'_> {
             let mut row = vec![it.sprocket.clone(), it.count.to_string()];
             row.push(scale.cell(it.force(0.5)));
             row.extend(half);
-            row.extend([it.columns()[1].1, it.greatest].map(|force| scale.cell(force)));
+            row.extend([it.p99(), it.greatest].map(|force| scale.cell(force)));
             row.extend(greatest);
             row.extend([
                 impulses.cell(it.impulse(0.5)),

@@ -57,7 +57,7 @@ const CRATES: [Storeys; 6] = [
             &["summary"],
             &["run_in"],
             &["precision"],
-            &["verdict"],
+            &["statistic", "verdict"],
             &["describe"],
             &["page"],
             &["record"],
