@@ -6,76 +6,45 @@ use chaindrive_mechanics::{
 
 use crate::SimulationError;
 
-/// Things to which the entries of a channel belong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axis {
-    /// One number a sample.
-    None,
-    /// One a roller.
-    Roller,
-    /// One a link.
-    Link,
-    /// One a joint of a chain of rigid links.
-    Joint,
-    /// One a span between consecutive sprockets.
-    Span,
-    /// One a sprocket.
-    Sprocket,
-    /// One a shaft that has a name.
-    Shaft,
-    /// One a coupling.
-    Coupling,
-    /// One a guide.
-    Guide,
-    /// One a tensioner.
-    Tensioner,
-    /// One a tensioner whose oil can be compressed.
-    OilColumn,
-    /// One a form of stored or kinetic energy.
-    Store,
-    /// One a flow of energy.
-    Flow,
-    /// One a place where energy is lost.
-    Place,
+macro_rules! axes {
+    ($($variant:ident, $name:literal, $text:literal;)*) => {
+        /// Things to which the entries of a channel belong.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Axis {
+            /// One number a sample.
+            None,
+            $(#[doc = $text] $variant,)*
+        }
+
+        impl Axis {
+            /// All axes with labels.
+            pub const ALL: [Self; 13] = [$(Self::$variant),*];
+
+            /// Name of the dimension; none for a scalar channel.
+            pub fn name(self) -> Option<&'static str> {
+                match self {
+                    Self::None => None,
+                    $(Self::$variant => Some($name),)*
+                }
+            }
+        }
+    };
 }
 
-impl Axis {
-    /// All axes with labels.
-    pub const ALL: [Self; 13] = [
-        Self::Roller,
-        Self::Link,
-        Self::Joint,
-        Self::Span,
-        Self::Sprocket,
-        Self::Shaft,
-        Self::Coupling,
-        Self::Guide,
-        Self::Tensioner,
-        Self::OilColumn,
-        Self::Store,
-        Self::Flow,
-        Self::Place,
-    ];
-
-    /// Name of the dimension; none for a scalar channel.
-    pub fn name(self) -> Option<&'static str> {
-        match self {
-            Self::None => None,
-            Self::Roller => Some("roller"),
-            Self::Link => Some("link"),
-            Self::Joint => Some("joint"),
-            Self::Span => Some("span"),
-            Self::Sprocket => Some("sprocket"),
-            Self::Shaft => Some("shaft"),
-            Self::Coupling => Some("coupling"),
-            Self::Guide => Some("guide"),
-            Self::Tensioner => Some("tensioner"),
-            Self::OilColumn => Some("oil_column"),
-            Self::Store => Some("store"),
-            Self::Flow => Some("flow"),
-            Self::Place => Some("place"),
-        }
-    }
+axes! {
+    Roller, "roller", "One a roller.";
+    Link, "link", "One a link.";
+    Joint, "joint", "One a joint of a chain of rigid links.";
+    Span, "span", "One a span between consecutive sprockets.";
+    Sprocket, "sprocket", "One a sprocket.";
+    Shaft, "shaft", "One a shaft that has a name.";
+    Coupling, "coupling", "One a coupling.";
+    Guide, "guide", "One a guide.";
+    Tensioner, "tensioner", "One a tensioner.";
+    OilColumn, "oil_column", "One a tensioner whose oil can be compressed.";
+    Store, "store", "One a form of stored or kinetic energy.";
+    Flow, "flow", "One a flow of energy.";
+    Place, "place", "One a place where energy is lost.";
 }
 
 macro_rules! channels {

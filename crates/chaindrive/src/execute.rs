@@ -312,14 +312,11 @@ fn complete<S: Sink>(
     let ending = stop.ending();
     let judged = judgement.as_ref();
     let told = close(sink, &provenance, &simulation, &summary, &ending, judged);
-    let told = told.map_err(RunError::Sink)?;
+    let (verdict, attributes) = told.map_err(RunError::Sink)?;
     if judgement == Some(Judgement::Interrupted) {
         // The samples are complete, but the user wants to get away.
         stop = Stop::Interrupted;
     }
-    let choice = provenance.choice.as_ref();
-    let ran_in = provenance.ran_in.as_ref();
-    let verdict = Verdict::of(&summary, &simulation, ran_in, choice, judged);
     Ok(Report {
         verdict,
         simulation,
@@ -330,7 +327,7 @@ fn complete<S: Sink>(
         summary,
         judgement,
         stop,
-        attributes: told,
+        attributes,
     })
 }
 
@@ -360,7 +357,7 @@ fn channels(request: &Request, simulation: &Simulation) -> Result<Vec<Channel>, 
     }
 }
 
-/// Tells the sink how the run ended; returns what the result says about itself.
+/// Tells the sink how the run ended; returns the verdict, and what the result says about itself.
 fn close<S: Sink>(
     sink: &mut S,
     provenance: &Provenance,
@@ -368,13 +365,14 @@ fn close<S: Sink>(
     summary: &Summary,
     ending: &Ending,
     judgement: Option<&Judgement>,
-) -> Result<Map<String, Value>, S::Error> {
-    let samples = summary.samples;
+) -> Result<(Verdict, Map<String, Value>), S::Error> {
+    let (ran_in, choice) = (provenance.ran_in.as_ref(), provenance.choice.as_ref());
+    let verdict = Verdict::of(summary, simulation, ran_in, choice, judgement);
     let attributes = attributes(
         provenance,
         simulation,
-        Some(summary),
-        samples,
+        Some((summary, &verdict)),
+        summary.samples,
         ending,
         judgement,
     );
@@ -385,7 +383,7 @@ fn close<S: Sink>(
         ending,
         attributes: &attributes,
     })?;
-    Ok(attributes)
+    Ok((verdict, attributes))
 }
 
 /// Simulated times at which checkpoints are due: counted, so that a run that is carried on has the same.

@@ -205,11 +205,6 @@ impl Scale {
         }
         format!("{value:.*}", decimals(value, 3))
     }
-
-    /// A heading with the unit: `mean [kN]`.
-    pub fn heading(&self, name: &str) -> String {
-        format!("{name} [{}]", self.unit)
-    }
 }
 
 /// Per cent, with the digits that mean something.
@@ -256,7 +251,7 @@ mod tests {
         assert_eq!(Measure::Stiffness.told(4.37e9), "4.37 GN/m");
         assert_eq!(Measure::Turning.told(157.08), "1500 rpm");
         let scale = Measure::Force.scale([5.8262, 38_663.1, f64::NAN]);
-        assert_eq!(scale.heading("least"), "least [kN]");
+        assert_eq!(scale.unit, "kN");
         assert_eq!(scale.cell(5826.2), "5.826");
         assert_eq!(scale.cell(-0.001), "0.000");
         assert_eq!(scale.cell(f64::NAN), "–");

@@ -19,6 +19,7 @@ use serde::Serialize;
 pub use numerics::numerics;
 
 use crate::precision::Judgement;
+use crate::sheet::aligned;
 use crate::summary::Summary;
 use crate::{RanIn, Simulation, Verdict};
 
@@ -43,10 +44,12 @@ pub struct Section {
 }
 
 impl Section {
-    fn new(title: &str, columns: impl IntoIterator<Item = String>) -> Self {
+    /// A part without content; the columns have tabs between them.
+    fn new(title: &str, columns: &str) -> Self {
+        let columns = columns.split('\t').filter(|it| !it.is_empty());
         Self {
             title: title.to_owned(),
-            columns: columns.into_iter().collect(),
+            columns: columns.map(str::to_owned).collect(),
             ..Self::default()
         }
     }
@@ -94,27 +97,15 @@ impl fmt::Display for Page {
 
 impl fmt::Display for Section {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.title)?;
-        let lines = || std::iter::once(&self.columns).chain(&self.rows);
-        let width = |column: usize| {
-            let cells = lines().filter_map(|line| line.get(column));
-            cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
-        };
-        let widths: Vec<usize> = (0..self.columns.len()).map(width).collect();
-        for line in lines().filter(|_| !self.rows.is_empty()) {
-            write!(f, "\n  ")?;
-            let cells = line.iter().zip(&widths).enumerate();
-            // Names stand left, figures right.
-            let cells = cells.map(|(column, (cell, width))| match column {
-                0 => format!("{cell:width$}"),
-                _ => format!("{cell:>width$}"),
-            });
-            let cells: Vec<String> = cells.collect();
-            write!(f, "{}", cells.join("  ").trim_end())?;
+        let mut text = self.title.clone();
+        if !self.rows.is_empty() {
+            for line in [&self.columns].into_iter().chain(&self.rows) {
+                text += &format!("\n  {}", line.join("\t"));
+            }
         }
         for sentence in &self.sentences {
-            write!(f, "\n  {sentence}")?;
+            text += &format!("\n  {sentence}");
         }
-        Ok(())
+        f.write_str(&aligned(&text, 0))
     }
 }

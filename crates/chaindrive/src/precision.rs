@@ -31,13 +31,12 @@ mod work;
 pub use crate::scene::{ACCURACY, Quantity};
 pub(crate) use choice::choose_with;
 pub use choice::{Accuracy, Choice, Promise, Trial, choose};
-pub use compare::{Comparison, Errors};
+pub use compare::{Comparison, Errors, Number};
 pub use estimate::{ChannelHorizon, Estimate, estimate};
 pub use horizon::{Divergence, Horizon, horizon};
 pub use impacts::ImpactErrors;
 pub use judgement::Judgement;
 pub(crate) use short_runs::ShortRuns;
-pub use table::Number;
 pub(crate) use trace::LEAST_LOSSES;
 pub use trace::{Gap, Strands};
 pub use variant::Variant;
@@ -46,12 +45,3 @@ pub use work::{Row, Study, Table, work_precision};
 
 /// Asked after every sample whether the user wants the calculation to stop.
 pub type Watch<'a> = &'a dyn Fn() -> bool;
-
-/// A value in the attributes of a result.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Attribute {
-    /// Text.
-    Text(String),
-    /// Finite number.
-    Number(f64),
-}

@@ -29,7 +29,8 @@ use std::sync::{Arc, OnceLock};
 
 use serde::{Deserialize, Serialize};
 
-pub use account::{Account, Entry, Quantity, Statistic};
+pub use crate::statistic::Statistic;
+pub use account::{Account, Entry, Quantity};
 pub use answer::{Answer, Finished};
 use blocks::Blocks;
 use choices::{Choices, Shared};

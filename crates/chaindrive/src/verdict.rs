@@ -10,19 +10,20 @@
 
 mod duty;
 mod reason;
-mod rules;
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
-use crate::precision::{Attribute, Choice, Estimate, Judgement, LEAST_LOSSES, Promise};
+use crate::precision::{Choice, Estimate, Judgement, LEAST_LOSSES, Promise};
+use crate::sheet::{NAMES, aligned};
 use crate::summary::{Ledger, Steadiness, Summary};
+use crate::zarr::Story;
 use crate::{Channel, RanIn, Simulation};
 
 pub(crate) use duty::{ALIGNED, ALIGNED_FAST};
-pub use reason::Reason;
-pub use rules::Rule;
+pub use reason::{Reason, Rule};
 
 /// How far a result can be trusted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -159,18 +160,13 @@ impl Verdict {
     }
 
     /// Attributes of a result.
-    pub fn attributes(&self) -> Vec<(String, Attribute)> {
-        let WrittenVerdict {
-            verdict,
-            reasons,
-            note,
-        } = self.written();
-        let text = |name: &str, text: String| (name.to_owned(), Attribute::Text(text));
-        vec![
-            text("verdict", verdict),
-            text("reasons", reasons),
-            text("verdict_note", note),
-        ]
+    pub fn attributes(&self) -> Map<String, Value> {
+        let written = self.written();
+        let mut story = Story::default();
+        story.text("verdict", &written.verdict);
+        story.text("reasons", &written.reasons);
+        story.text("verdict_note", &written.note);
+        story.0
     }
 
     /// The reasons in words, and the notes behind them, with semicolons between them.
@@ -222,14 +218,14 @@ impl Verdict {
 
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "verdict                  {}", self.trust.name())?;
+        let mut text = format!("verdict\t{}", self.trust.name());
         for reason in &self.reasons {
-            write!(f, "\n  {:22} {reason}", reason.trust().name())?;
+            text += &format!("\n  {}\t{reason}", reason.trust().name());
         }
         for note in &self.notes {
-            write!(f, "\n  {:22} {note}", "note")?;
+            text += &format!("\n  note\t{note}");
         }
-        Ok(())
+        f.write_str(&aligned(&text, NAMES))
     }
 }
 

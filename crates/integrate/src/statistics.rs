@@ -45,6 +45,11 @@ impl Default for Statistics {
 }
 
 impl Statistics {
+    /// Candidates sent back or given up, whatever the reason.
+    pub fn rejected(&self) -> u64 {
+        self.rejections + self.error_rejections + self.newton_failures
+    }
+
     /// Counts an accepted step of size h \[s\].
     pub(crate) fn accept(&mut self, h: f64) {
         self.steps += 1;

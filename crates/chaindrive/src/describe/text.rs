@@ -1,282 +1,198 @@
 //! A description as text.
 
 use std::f64::consts::TAU;
-use std::fmt;
+use std::fmt::{self, Write as _};
 
 use crate::figure::{Measure, figure};
+use crate::sheet::{NAMES, aligned, lines};
 
 use super::{
-    ChainFacts, Closing, ContactFacts, Cost, Description, LinkFacts, Model, RatedPower, SpanAtRest,
-    counted,
+    ChainFacts, Closing, ContactFacts, Cost, Description, LinkFacts, Model, RatedPower, counted,
 };
 
 impl fmt::Display for Description {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut sheet = String::new();
         for chain in &self.chains {
-            chain.fmt(f)?;
-            self.route(chain, f)?;
+            chain.tell(&mut sheet)?;
+            self.route(chain, &mut sheet)?;
         }
-        self.shafts(f)?;
-        for unlike in &self.tolerances {
-            row(f, "not as drawn", &unlike.to_string())?;
-        }
-        for span in &self.out_of_line {
-            row(f, "out of line", &span.to_string())?;
-        }
+        self.shafts(&mut sheet)?;
+        all(&mut sheet, "not as drawn", &self.tolerances)?;
+        all(&mut sheet, "out of line", &self.out_of_line)?;
         for stack in &self.stacks {
-            let labels = ["behind the teeth"]
-                .into_iter()
-                .chain(std::iter::repeat(""));
-            for (label, line) in labels.zip(stack.to_string().lines()) {
-                row(f, label, line)?;
-            }
+            let text = stack.to_string().replace('\n', "\n  \t");
+            all(&mut sheet, "behind the teeth", [text])?;
         }
-        if let Some(oil) = &self.oil {
-            row(f, "oil", &oil.to_string())?;
+        all(&mut sheet, "oil", &self.oil)?;
+        all(&mut sheet, "turned by torques", &self.free_trains)?;
+        self.statics(&mut sheet)?;
+        self.model.tell(&mut sheet)?;
+        self.time_scales(&mut sheet)?;
+        self.polygon(&mut sheet)?;
+        self.cost(&mut sheet)?;
+        for warning in &self.warnings {
+            writeln!(sheet, "warning: {warning}")?;
         }
-        for train in &self.free_trains {
-            row(f, "turned by torques", &train.to_string())?;
-        }
-        self.statics(f)?;
-        self.model.fmt(f)?;
-        self.time_scales(f)?;
-        self.polygon(f)?;
-        self.cost(f)?;
-        let mut warnings = self.warnings.iter();
-        warnings.try_for_each(|warning| writeln!(f, "warning: {warning}"))
+        f.write_str(&aligned(&sheet, NAMES))
     }
 }
 
-impl fmt::Display for ChainFacts {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let chain = self;
-        match &chain.name {
-            Some(name) => writeln!(f, "chain {name}")?,
-            None => writeln!(f, "chain")?,
+/// A line a thing, all with one name.
+fn all(
+    sheet: &mut String,
+    name: &str,
+    things: impl IntoIterator<Item = impl fmt::Display>,
+) -> fmt::Result {
+    let mut things = things.into_iter();
+    things.try_for_each(|it| writeln!(sheet, "  {name}\t{it}"))
+}
+
+/// A number, or the dash of none.
+fn or_dash(number: Option<impl fmt::Display>) -> String {
+    number.map_or_else(|| "–".to_owned(), |it| it.to_string())
+}
+
+impl ChainFacts {
+    fn tell(&self, sheet: &mut String) -> fmt::Result {
+        let laid = self.bodies.rollers.map_or("", |_| ", while it is laid");
+        let [least, most] = self.roller_diameters.map(|it| it * 1e3);
+        let link = Measure::Stiffness.told(self.link_stiffness);
+        let strain = Measure::Force.told(self.axial_stiffness);
+        let name = self.name.iter().map(|it| format!(" {it}"));
+        lines! { sheet;
+            "chain{}", name.collect::<String>();
+            "  links\t{} of {:.4} mm", self.links, self.pitch * 1e3;
+            "  model\t{}", self.bodies;
         }
-        row(
-            f,
-            "links",
-            &format!("{} of {:.4} mm", chain.links, chain.pitch * 1e3),
-        )?;
-        row(f, "model", &chain.bodies.to_string())?;
-        let [least, most] = chain.roller_diameters.map(|it| it * 1e3);
-        if least < most {
-            row(
-                f,
-                "roller diameters",
-                &format!("{least:.4} to {most:.4} mm"),
-            )?;
+        let varied = (least < most).then(|| format!("{least:.4} to {most:.4} mm"));
+        all(sheet, "roller diameters", varied)?;
+        let across = self
+            .transverse_wave_speeds
+            .map(|[least, most]| format!(", {least:.1} to {most:.1} m/s across, at rest"));
+        lines! { sheet;
+            "  mass per length\t{:.4} kg/m", self.mass_per_length;
+            "  axial stiffness\t{link} a link, {strain} a unit of strain{laid}";
+            "  wave speeds\t{:.0} m/s along{}", self.longitudinal_wave_speed, across.unwrap_or_default();
         }
-        row(
-            f,
-            "mass per length",
-            &format!("{:.4} kg/m", chain.mass_per_length),
-        )?;
-        let stiffness = format!(
-            "{} a link, {} a unit of strain{}",
-            Measure::Stiffness.told(chain.link_stiffness),
-            Measure::Force.told(chain.axial_stiffness),
-            if chain.bodies.rollers.is_some() {
-                ", while it is laid"
-            } else {
-                ""
-            }
-        );
-        row(f, "axial stiffness", &stiffness)?;
-        let along = format!("{:.0} m/s along", chain.longitudinal_wave_speed);
-        let waves = match chain.transverse_wave_speeds {
-            Some([least, most]) => format!("{along}, {least:.1} to {most:.1} m/s across, at rest"),
-            None => along,
-        };
-        row(f, "wave speeds", &waves)?;
-        match &chain.rated_power {
-            Some(rated) => row(f, "rated power", &rated.to_string()),
-            None => Ok(()),
-        }
+        all(sheet, "rated power", &self.rated_power)
     }
 }
 
 impl Description {
-    fn route(&self, chain: &ChainFacts, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn route(&self, chain: &ChainFacts, sheet: &mut String) -> fmt::Result {
         let Some(closing) = &chain.closing else {
             return Ok(());
         };
-        writeln!(f, "route                      teeth   pitches   wrap [deg]")?;
+        lines! { sheet; "route\tteeth\tpitches\twrap [deg]"; }
         for stop in self.stops.iter().filter(|it| it.chain == chain.name) {
-            let dash = || "–".to_owned();
-            let teeth = stop.teeth.map_or_else(dash, |teeth| teeth.to_string());
-            let wrap = stop
-                .wrap
-                .map_or_else(dash, |wrap| format!("{:.2}", wrap.to_degrees()));
-            writeln!(
-                f,
-                "  {:22} {teeth:>7}  {:>8}  {wrap:>11}",
-                stop.name, stop.pitches
-            )?;
+            let wrap = stop.wrap.map(|wrap| format!("{:.2}", wrap.to_degrees()));
+            lines! { sheet;
+                "  {}\t{}\t{}\t{}", stop.name, or_dash(stop.teeth), stop.pitches, or_dash(wrap);
+            }
         }
-        writeln!(
-            f,
-            "spans at rest            pitches   length [m]   tension [N]   first frequency [Hz]"
-        )?;
-        for SpanAtRest {
-            name,
-            pitches,
-            length,
-            tension,
-            frequency,
-            ..
-        } in self.spans.iter().filter(|it| it.chain == chain.name)
-        {
-            let frequency = frequency.map_or_else(|| "–".to_owned(), |f| format!("{f:.2}"));
-            writeln!(
-                f,
-                "  {name:22} {pitches:>7}   {length:>10.4}   {tension:>11.1}   {frequency:>20}"
-            )?;
+        lines! { sheet; "spans at rest\tpitches\tlength [m]\ttension [N]\tfirst frequency [Hz]"; }
+        for span in self.spans.iter().filter(|it| it.chain == chain.name) {
+            let frequency = or_dash(span.frequency.map(|it| format!("{it:.2}")));
+            lines! { sheet;
+                "  {}\t{}\t{:.4}\t{:.1}\t{frequency}", span.name, span.pitches, span.length, span.tension;
+            }
         }
         if let Some(against) = &chain.against_route {
-            writeln!(f, "  {against}")?;
+            writeln!(sheet, "  {against}")?;
         }
-        row(f, "closing", &closing.to_string())
+        all(sheet, "closing", [closing])
     }
 
-    fn shafts(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn shafts(&self, sheet: &mut String) -> fmt::Result {
         if self.shafts.is_empty() {
             return Ok(());
         }
-        writeln!(
-            f,
-            "shafts                inertia [kg m²]     speed [rpm]   sprockets; joined by"
-        )?;
+        lines! { sheet; "shafts\tinertia [kg m²]\tspeed [rpm]\tsprockets; joined by"; }
         for shaft in &self.shafts {
-            let sprockets = match shaft.sprockets.as_slice() {
-                [] => "–".to_owned(),
-                names => names.join(", "),
-            };
-            let joins = match shaft.joined_by.as_slice() {
-                [] => String::new(),
-                names => format!("; {}", names.join(", ")),
-            };
-            writeln!(
-                f,
-                "  {:18} {:>16}   {:>13.2}   {sprockets}{joins}",
-                shaft.name,
-                figure(shaft.inertia),
-                shaft.speed * 60.0 / TAU
-            )?;
+            let sprockets = (!shaft.sprockets.is_empty()).then(|| shaft.sprockets.join(", "));
+            let mut joined = or_dash(sprockets);
+            if !shaft.joined_by.is_empty() {
+                write!(joined, "; {}", shaft.joined_by.join(", "))?;
+            }
+            let (inertia, speed) = (figure(shaft.inertia), shaft.speed * 60.0 / TAU);
+            lines! { sheet; "  {}\t{inertia}\t{speed:.2}\t{joined}", shaft.name; }
         }
         Ok(())
     }
 
-    fn statics(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn statics(&self, sheet: &mut String) -> fmt::Result {
         if self.statics.is_empty() {
             return Ok(());
         }
         // Rigid links take over where the springs have settled.
-        let rigid = |chain: &ChainFacts| chain.bodies.rollers.is_some();
-        let of = if self.chains.iter().any(rigid) {
-            "statics, laid as springs "
-        } else {
-            "statics                  "
-        };
-        writeln!(f, "{of}iterations   span tensions [N]")?;
+        let are_rigid = self.chains.iter().any(|it| it.bodies.rollers.is_some());
+        let laid = if are_rigid { ", laid as springs" } else { "" };
+        lines! { sheet; "statics{laid}\titerations\tspan tensions [N]"; }
         for stage in &self.statics {
-            let tensions = stage
-                .span_tensions
-                .iter()
-                .map(|tension| format!("{tension:.1}"));
-            let tensions = tensions.collect::<Vec<_>>().join("  ");
-            writeln!(
-                f,
-                "  {:22} {:>10}   {tensions}",
-                stage.stage, stage.iterations
-            )?;
+            let tensions = stage.span_tensions.iter().map(|it| format!("\t{it:.1}"));
+            let tensions: String = tensions.collect();
+            lines! { sheet; "  {}\t{}{tensions}", stage.stage, stage.iterations; }
         }
         Ok(())
     }
 
-    fn time_scales(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn time_scales(&self, sheet: &mut String) -> fmt::Result {
         let scales = &self.time_scales;
-        writeln!(f, "time scales")?;
-        row(
-            f,
-            "stiffest mode",
-            &format!(
-                "1/ω = {}, {} without its damping",
-                Measure::Time.told(scales.stiffest),
-                Measure::Time.told(scales.undamped)
-            ),
-        )?;
-        row(f, "chain speed", &format!("{:.3} m/s", scales.chain_speed))?;
+        let [damped, undamped] =
+            [scales.stiffest, scales.undamped].map(|it| Measure::Time.told(it));
+        lines! { sheet;
+            "time scales";
+            "  stiffest mode\t1/ω = {damped}, {undamped} without its damping";
+            "  chain speed\t{:.3} m/s", scales.chain_speed;
+        }
         for (name, frequency) in &scales.mesh_frequencies {
-            row(f, &format!("mesh of {name}"), &format!("{frequency:.3} Hz"))?;
+            writeln!(sheet, "  mesh of {name}\t{frequency:.3} Hz")?;
         }
         Ok(())
     }
 
-    fn polygon(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn polygon(&self, sheet: &mut String) -> fmt::Result {
         if self.polygon.is_empty() {
             return Ok(());
         }
-        writeln!(
-            f,
-            "polygon action of every strand, were it tight; the wheel it runs onto drives"
-        )?;
+        lines! { sheet; "polygon action of every strand, were it tight; the wheel it runs onto drives"; }
         for pair in &self.polygon {
-            let ratio = |ratio: f64| (ratio / pair.mean_ratio - 1.0) * 100.0;
+            let mean = pair.mean_ratio;
+            let [least, greatest] =
+                [pair.least_ratio, pair.greatest_ratio].map(|it| (it / mean - 1.0) * 100.0);
             let closing = pair.closing_speed.map_or_else(String::new, |speed| {
                 format!(", {speed:.4} m/s along the normal of the tooth")
             });
-            let text = format!(
-                "ratio {:.5} {:+.4} to {:+.4} %, error {} peak to peak, seating at {:.4} m/s{closing}, {:.2} Hz",
-                pair.mean_ratio,
-                ratio(pair.least_ratio),
-                ratio(pair.greatest_ratio),
-                turned(pair.transmission_error),
-                pair.seating_velocity,
-                pair.mesh_frequency
-            );
-            row(f, &format!("{} ← {}", pair.driver, pair.driven), &text)?;
+            let (error, seating) = (turned(pair.transmission_error), pair.seating_velocity);
+            lines! { sheet;
+                "  {} ← {}\tratio {mean:.5} {least:+.4} to {greatest:+.4} %, error {error} peak to peak, seating at {seating:.4} m/s{closing}, {:.2} Hz",
+                    pair.driver, pair.driven, pair.mesh_frequency;
+            }
         }
         Ok(())
     }
 
-    fn cost(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    fn cost(&self, sheet: &mut String) -> fmt::Result {
         let cost = &self.cost;
-        writeln!(f, "run")?;
         let mean = if cost.adaptive { "about " } else { "" };
-        row(
-            f,
-            "method",
-            &format!(
-                "{}, step {mean}{}",
-                cost.method,
-                Measure::Time.told(cost.step)
-            ),
-        )?;
+        lines! { sheet;
+            "run";
+            "  method\t{}, step {mean}{}", cost.method, Measure::Time.told(cost.step);
+        }
         if let Some(accuracy) = cost.unless_chosen_for {
-            let text = format!(
-                "by default; a run chooses them for an accuracy of {} %",
-                accuracy * 100.0
-            );
-            row(f, "", &text)?;
+            let percent = accuracy * 100.0;
+            lines! { sheet; "  \tby default; a run chooses them for an accuracy of {percent} %"; }
         }
-        let extent = format!(
-            "{} s in {:.0} steps, {:.0} samples",
-            cost.until, cost.steps, cost.samples
-        );
-        row(f, "extent", &extent)?;
-        let time = format!(
-            "about {}, {:.3} s for a second simulated; {} a step, mean of {}",
-            duration(cost.run_time),
-            cost.real_time_ratio,
-            duration(cost.time_per_step),
-            cost.measured
-        );
-        if let Some(before) = run_in(cost) {
-            row(f, "run-in", &before)?;
+        lines! { sheet;
+            "  extent\t{} s in {:.0} steps, {:.0} samples", cost.until, cost.steps, cost.samples;
         }
-        row(f, "run time", &time)
+        all(sheet, "run-in", run_in(cost))?;
+        let [all_of_it, step] = [cost.run_time, cost.time_per_step].map(duration);
+        lines! { sheet;
+            "  run time\tabout {all_of_it}, {:.3} s for a second simulated; {step} a step, mean of {}", cost.real_time_ratio, cost.measured;
+        }
+        Ok(())
     }
 }
 
@@ -297,39 +213,22 @@ fn run_in(cost: &Cost) -> Option<String> {
     ))
 }
 
-impl fmt::Display for Model {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "model")?;
-        let freedom = format!(
-            "{}, of {} and",
-            self.degrees_of_freedom,
-            counted(self.rollers, "roller")
-        );
-        let bodies = format!(
-            "{freedom} {} ({} driven), {}",
-            counted(self.free_sprockets, "free sprocket"),
-            self.driven_sprockets,
-            counted(self.tensioners, "tensioner")
-        );
-        row(f, "degrees of freedom", &bodies)?;
-        let guides = format!("{} fixed, {} moving", self.fixed_guides, self.moving_guides);
-        row(f, "guides", &guides)?;
-        row(
-            f,
-            "contact candidates",
-            &format!("{} near a body", counted(self.candidates, "roller")),
-        )?;
+impl Model {
+    fn tell(&self, sheet: &mut String) -> fmt::Result {
+        let [rollers, candidates] = [self.rollers, self.candidates].map(|it| counted(it, "roller"));
+        let sprockets = counted(self.free_sprockets, "free sprocket");
+        let tensioners = counted(self.tensioners, "tensioner");
+        lines! { sheet;
+            "model";
+            "  degrees of freedom\t{}, of {rollers} and {sprockets} ({} driven), {tensioners}", self.degrees_of_freedom, self.driven_sprockets;
+            "  guides\t{} fixed, {} moving", self.fixed_guides, self.moving_guides;
+            "  contact candidates\t{candidates} near a body";
+        }
         for contact in &self.contacts {
-            row(
-                f,
-                &format!("contact of {}", contact.pair),
-                &contact.to_string(),
-            )?;
+            writeln!(sheet, "  contact of {}\t{contact}", contact.pair)?;
         }
-        if self.absent.is_empty() {
-            return Ok(());
-        }
-        row(f, "absent", &self.absent.join(", "))
+        let absent = (!self.absent.is_empty()).then(|| self.absent.join(", "));
+        all(sheet, "absent", absent)
     }
 }
 
@@ -449,10 +348,6 @@ fn turned(angle: f64) -> String {
     } else {
         Measure::Angle.told(angle)
     }
-}
-
-fn row(f: &mut fmt::Formatter<'_>, name: &str, text: &str) -> fmt::Result {
-    writeln!(f, "  {name:22} {text}")
 }
 
 /// A duration in a unit that leaves a few digits before the point.

@@ -10,16 +10,14 @@ impl Told<'_> {
     pub(super) fn losses(&self) -> Section {
         let lost = self.summary.losses();
         let time = self.summary.duration();
-        let columns = ["place", "power [W]", "share [%]"].map(str::to_owned);
-        let mut section = Section::new("losses", columns);
+        let mut section = Section::new("losses", "place\tpower [W]\tshare [%]");
         let all = self.summary.energy_dissipated();
         if !lost.is_empty() && time > 0.0 {
             let names = lost.iter().map(|(place, lost)| (place.name(), *lost));
             for (place, lost) in names.chain(std::iter::once(("all", all))) {
                 let share = format!("{:.1}", 100.0 * lost / all);
-                section
-                    .rows
-                    .push(vec![place.to_owned(), figure(lost / time), share]);
+                let power = figure(lost / time);
+                section.rows.push(vec![place.to_owned(), power, share]);
             }
         }
         section.sentences.extend(self.balance());

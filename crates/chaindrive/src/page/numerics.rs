@@ -2,11 +2,10 @@
 
 use std::fmt::{self, Write as _};
 
-use chaindrive_mechanics::Struck;
-
 use crate::event::EventTable;
 use crate::figure::{Measure, duration, figure, percent};
 use crate::precision::{Choice, Judgement};
+use crate::sheet::{NAMES, aligned, lines};
 use crate::summary::Summary;
 use crate::{Simulation, Verdict};
 
@@ -21,8 +20,9 @@ pub fn numerics(
     let mut text = String::new();
     // Texts take whatever is written.
     let _ = told(&mut text, verdict, summary, simulation);
+    let mut text = aligned(text.trim_end(), NAMES);
     if let Some(choice) = choice {
-        let _ = write!(text, "\n{choice}");
+        text += &format!("\n{choice}");
     }
     match judgement {
         None | Some(Judgement::SwitchedOff) => text,
@@ -37,43 +37,30 @@ fn told(
     simulation: &Simulation,
 ) -> fmt::Result {
     for reason in verdict.reasons.iter().chain(&verdict.notes) {
-        writeln!(f, "{:25}{reason}", reason.name())?;
+        lines! { f; "{}\t{reason}", reason.name(); }
     }
     let forces = summary.forces();
+    let quantiles = [forces.p50, forces.p90, forces.p99, forces.max];
+    let [p50, p90, p99, max] = quantiles.map(figure);
     if forces.max > 0.0 {
-        writeln!(
-            f,
-            "contact force [N]        p50 {}  p90 {}  p99 {}  max {}",
-            figure(forces.p50),
-            figure(forces.p90),
-            figure(forces.p99),
-            figure(forces.max)
-        )?;
+        lines! { f; "contact force [N]\tp50 {p50}  p90 {p90}  p99 {p99}  max {max}"; }
     }
     contacts(f, summary, simulation)?;
     touches(f, simulation)?;
     energy(f, summary)?;
-    let statistics = simulation.statistics();
-    let time = simulation.time();
-    let steps = statistics.steps.max(1) as f64;
-    writeln!(
-        f,
-        "stepping                 {} with {} steps of {} to {}, {} rejected, {} reduced",
-        simulation.method().name(),
-        statistics.steps,
-        duration(statistics.smallest_step),
-        duration(statistics.largest_step),
-        statistics.rejections + statistics.error_rejections + statistics.newton_failures,
-        statistics.reductions
-    )?;
-    let wall = simulation.stepping_time();
-    write!(
-        f,
-        "speed                    {} × real time, {} ns per link and step, {wall:.3} s for {}",
-        figure(time / wall),
-        figure(wall * 1e9 / steps / simulation.system().links() as f64),
-        duration(time)
-    )
+    let counts = simulation.statistics();
+    let (time, wall) = (simulation.time(), simulation.stepping_time());
+    let links = simulation.system().links() as f64;
+    let of_a_link = figure(wall * 1e9 / counts.steps.max(1) as f64 / links);
+    let [shortest, longest] = [counts.smallest_step, counts.largest_step].map(duration);
+    let (method, steps) = (simulation.method().name(), counts.steps);
+    let (rejected, reduced) = (counts.rejected(), counts.reductions);
+    let (ratio, until) = (figure(time / wall), duration(time));
+    lines! { f;
+        "stepping\t{method} with {steps} steps of {shortest} to {longest}, {rejected} rejected, {reduced} reduced";
+        "speed\t{ratio} × real time, {of_a_link} ns per link and step, {wall:.3} s for {until}";
+    }
+    Ok(())
 }
 
 /// Energy supplied and lost, and what of it is unaccounted for.
@@ -81,30 +68,29 @@ fn energy(f: &mut String, summary: &Summary) -> fmt::Result {
     let ledger = summary.ledger();
     let told = |energy: f64| Measure::Energy.told(energy);
     let share = |of: f64| percent((summary.residual / of).abs());
-    write!(
-        f,
-        "energy                   supplied {}, dissipated {}; unaccounted for {}",
-        told(summary.energy_supplied()),
-        told(summary.energy_dissipated()),
-        told(summary.residual)
-    )?;
-    if ledger.moved > 0.0 {
-        if ledger.losses > 0.0 {
-            write!(f, ", {} of the losses", share(ledger.losses))?;
-        }
-        // What moves freely is judged by its motion: a ring that spins in balance moves no energy.
-        if ledger.exchanged > 0.0 {
-            write!(
-                f,
-                ", {} of the {} moved",
-                share(ledger.moved),
-                told(ledger.moved)
-            )?;
-        } else {
-            write!(f, ", {} of the kinetic energy", share(ledger.kinetic))?;
-        }
+    let [supplied, lost] = [summary.energy_supplied(), summary.energy_dissipated()].map(told);
+    let residual = told(summary.residual);
+    let of_losses = if ledger.moved > 0.0 && ledger.losses > 0.0 {
+        format!(", {} of the losses", share(ledger.losses))
+    } else {
+        String::new()
+    };
+    // What moves freely is judged by its motion: a ring that spins in balance moves no energy.
+    let of_moved = if ledger.moved <= 0.0 {
+        String::new()
+    } else if ledger.exchanged > 0.0 {
+        format!(
+            ", {} of the {} moved",
+            share(ledger.moved),
+            told(ledger.moved)
+        )
+    } else {
+        format!(", {} of the kinetic energy", share(ledger.kinetic))
+    };
+    lines! { f;
+        "energy\tsupplied {supplied}, dissipated {lost}; unaccounted for {residual}{of_losses}{of_moved}";
     }
-    writeln!(f)
+    Ok(())
 }
 
 /// One line a kind of contact that was logged.
@@ -113,28 +99,16 @@ fn contacts(f: &mut String, summary: &Summary, simulation: &Simulation) -> fmt::
     if found.iter().all(|contacts| contacts.count == 0) {
         return Ok(());
     }
-    writeln!(
-        f,
-        "contacts                 number   mean peak [N]   max peak [N]   share of time a roller or joint"
-    )?;
-    let system = simulation.system();
-    let places = [
-        system.rollers(),
-        system.rollers(),
-        system.joints(),
-        system.joints(),
-    ];
-    for ((name, contacts), places) in EventTable::KINDS.iter().zip(found).zip(places) {
-        if contacts.count > 0 {
-            let share = contacts.duration / (simulation.time() * places as f64);
-            writeln!(
-                f,
-                "  {name:20} {:>8}   {:>13.1}   {:>12.1}   {:>10.2} %",
-                contacts.count,
-                contacts.mean(),
-                contacts.greatest,
-                100.0 * share
-            )?;
+    lines! { f; "contacts\tnumber\tmean peak [N]\tmax peak [N]\tshare of time a roller or joint"; }
+    let (system, time) = (simulation.system(), simulation.time());
+    let [rollers, joints] = [system.rollers(), system.joints()];
+    let places = [rollers, rollers, joints, joints];
+    for ((name, of), places) in EventTable::KINDS.iter().zip(found).zip(places) {
+        let share = 100.0 * (of.duration / (time * places as f64));
+        if of.count > 0 {
+            lines! { f;
+                "  {name}\t{}\t{:.1}\t{:.1}\t{share:.2} %", of.count, of.mean(), of.greatest;
+            }
         }
     }
     Ok(())
@@ -147,26 +121,13 @@ fn touches(f: &mut String, simulation: &Simulation) -> fmt::Result {
     if struck.is_empty() {
         return Ok(());
     }
-    writeln!(
-        f,
-        "touches and bounces      number   fastest [m/s]   deepest [µm]   below the floor of the law"
-    )?;
-    for Struck {
-        place,
-        impacts,
-        floor,
-        ..
-    } in struck
-    {
-        let gentle = impacts.gentle as f64 / impacts.count as f64;
-        writeln!(
-            f,
-            "  {place:20} {:>8}   {:>13.3}   {:>12.2}   {:.0} % below {floor} m/s",
-            impacts.count,
-            impacts.fastest,
-            impacts.deepest * 1e6,
-            100.0 * gentle
-        )?;
+    lines! { f; "touches and bounces\tnumber\tfastest [m/s]\tdeepest [µm]\tbelow the floor of the law"; }
+    for it in struck {
+        let (floor, of) = (it.floor, &it.impacts);
+        let gentle = 100.0 * (of.gentle as f64 / of.count as f64);
+        lines! { f;
+            "  {}\t{}\t{:.3}\t{:.2}\t{gentle:.0} % below {floor} m/s", it.place, of.count, of.fastest, of.deepest * 1e6;
+        }
     }
     Ok(())
 }

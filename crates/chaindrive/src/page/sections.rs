@@ -59,21 +59,20 @@ impl Told<'_> {
 
     fn verdict(&self) -> Section {
         let title = format!("verdict: {}", self.verdict.trust.name());
-        let mut section = Section::new(&title, []);
+        let mut section = Section::new(&title, "");
         section.sentences = self.verdict.sentences();
         section
     }
 
     /// Length of the record, and the run-in before it.
     fn record(&self) -> Section {
-        let mut section = Section::new("record", []);
+        let mut section = Section::new("record", "");
         let time = self.summary.duration();
         if time > 0.0 {
             let samples = self.summary.samples;
             let time = Measure::Time.told(time);
-            section
-                .sentences
-                .push(format!("{time}, {samples} samples."));
+            let told = format!("{time}, {samples} samples.");
+            section.sentences.push(told);
         }
         section.sentences.extend(self.ran_in.map(RanIn::to_string));
         let known = self.summary.steadiness();
@@ -97,16 +96,11 @@ impl Told<'_> {
         let turning = Measure::Turning.scale(sprockets.iter().map(|it| it.speed.mean()));
         let torques = Measure::Torque.scale(sprockets.iter().map(|it| it.torque.mean()));
         let powers = Measure::Power.scale(sprockets.iter().map(|it| it.power.mean()));
-        let columns = [
-            "sprocket".to_owned(),
-            "role".to_owned(),
-            "teeth".to_owned(),
-            turning.heading("speed"),
-            torques.heading("torque"),
-            powers.heading("power"),
-            "ratio".to_owned(),
-        ];
-        let mut section = Section::new("what the drive does", columns);
+        let [speed, torque, power] = [turning, torques, powers].map(|it| it.unit);
+        let columns = format!(
+            "sprocket\trole\tteeth\tspeed [{speed}]\ttorque [{torque}]\tpower [{power}]\tratio"
+        );
+        let mut section = Section::new("what the drive does", &columns);
         for it in sprockets {
             let leader = &sprockets[it.leader()];
             let ratio = it.speed.mean() / leader.speed.mean();
@@ -123,9 +117,8 @@ impl Told<'_> {
         section.sentences.extend(self.chain_speeds());
         let speeds: Vec<f64> = sprockets.iter().map(|it| it.speed.mean()).collect();
         let against = self.simulation.assembled().drive.against_routes(&speeds);
-        section
-            .sentences
-            .extend(against.iter().map(ToString::to_string));
+        let against = against.iter().map(ToString::to_string);
+        section.sentences.extend(against);
         for (chain, spans) in self.chains() {
             let mean = |index: &usize| self.summary.spans[*index].mean();
             let held = spans.filter(|index| mean(index).is_finite());
@@ -141,11 +134,7 @@ impl Told<'_> {
                 let tension = Measure::Force.told(mean(index));
                 format!("{}, {tension}", self.summary.spans[*index].name)
             });
-            let of = if chain.is_empty() {
-                chain
-            } else {
-                format!(" of {chain}")
-            };
+            let of = after(" of ", &chain);
             let sentence = format!("Tight side{of}: {tight}. Slack side: {slack}.");
             section.sentences.push(sentence);
         }
@@ -211,15 +200,9 @@ impl Told<'_> {
     fn spans(&self) -> Section {
         let spans = &self.summary.spans;
         let scale = Measure::Force.scale(spans.iter().flat_map(|it| [it.least, it.greatest]));
-        let heading = format!("span tension [{}]", scale.unit);
-        let columns = [
-            "mean", "± 95 %", "std", "± 95 %", "p1", "± 95 %", "p99", "± 95 %",
-        ];
-        let columns = columns
-            .into_iter()
-            .chain(["least", "greatest"])
-            .map(str::to_owned);
-        let mut section = Section::new("span tensions", std::iter::once(heading).chain(columns));
+        let columns = "mean\t± 95 %\tstd\t± 95 %\tp1\t± 95 %\tp99\t± 95 %\tleast\tgreatest";
+        let columns = format!("span tension [{}]\t{columns}", scale.unit);
+        let mut section = Section::new("span tensions", &columns);
         let samples = self.summary.samples;
         for (span, known) in spans.iter().zip(self.summary.steadiness()) {
             let Some(known) = known else {
@@ -261,15 +244,10 @@ impl Told<'_> {
 
     /// Links against what breaks them.
     fn links(&self) -> Section {
-        let mut section = Section::new("links", []);
-        for load in self
-            .summary
-            .carried()
-            .iter()
-            .filter(|it| it.tension.is_finite())
-        {
-            section.sentences.push(strength(load));
-        }
+        let mut section = Section::new("links", "");
+        let loads = self.summary.carried().into_iter();
+        let loads = loads.filter(|it| it.tension.is_finite());
+        section.sentences.extend(loads.map(|it| strength(&it)));
         section
     }
 
@@ -282,13 +260,9 @@ impl Told<'_> {
             .chain(guides.map(|(name, force)| (format!("guide {name}"), force)))
             .collect();
         let scale = Measure::Force.scale(all.iter().map(|(_, it)| it.magnitude.greatest));
-        let columns = [
-            "on".to_owned(),
-            scale.heading("mean"),
-            "direction from x [deg]".to_owned(),
-            scale.heading("greatest"),
-        ];
-        let mut section = Section::new("bearing and guide forces", columns);
+        let unit = scale.unit;
+        let columns = format!("on\tmean [{unit}]\tdirection from x [deg]\tgreatest [{unit}]");
+        let mut section = Section::new("bearing and guide forces", &columns);
         for (name, force) in all {
             let [mean, direction] = force.mean();
             let direction = if mean > 0.0 {
@@ -296,12 +270,8 @@ impl Told<'_> {
             } else {
                 "–".to_owned()
             };
-            section.rows.push(vec![
-                name,
-                scale.cell(mean),
-                direction,
-                scale.cell(force.magnitude.greatest),
-            ]);
+            let [mean, greatest] = [mean, force.magnitude.greatest].map(|it| scale.cell(it));
+            section.rows.push(vec![name, mean, direction, greatest]);
         }
         section
     }
@@ -312,14 +282,12 @@ impl Told<'_> {
         let scale = Measure::Force.scale(struck.iter().map(|it| it.greatest));
         let impulses = Measure::Impulse.scale(struck.iter().map(|it| it.impulse(0.5)));
         let estimate = self.judgement.and_then(Judgement::estimate);
-        let by_step = estimate.map(|_| "± step [%]".to_owned());
-        let columns = ["on".to_owned(), "number".to_owned()].into_iter();
-        let columns = columns.chain([scale.heading("half below")]);
-        let columns = columns.chain(by_step.clone());
-        let columns = columns.chain(["99 of 100 below", "greatest"].map(|it| scale.heading(it)));
-        let columns = columns.chain(by_step);
-        let columns = columns.chain([impulses.heading("impulse"), "closing [m/s]".to_owned()]);
-        let mut section = Section::new("impacts of rollers that seat", columns);
+        let by_step = estimate.map_or("", |_| "\t± step [%]");
+        let (unit, impulse) = (scale.unit, impulses.unit);
+        let half = format!("on\tnumber\thalf below [{unit}]{by_step}");
+        let most = format!("99 of 100 below [{unit}]\tgreatest [{unit}]{by_step}");
+        let columns = format!("{half}\t{most}\timpulse [{impulse}]\tclosing [m/s]");
+        let mut section = Section::new("impacts of rollers that seat", &columns);
         for it in struck {
             let errors = estimate.map(|all| by_the_step::of_impacts(all, &it.sprocket));
             let half = errors.map(|it| by_the_step::cell(it.map(|it| it.p50)));
@@ -327,12 +295,10 @@ impl Told<'_> {
             let mut row = vec![it.sprocket.clone(), it.count.to_string()];
             row.push(scale.cell(it.force(0.5)));
             row.extend(half);
-            row.extend([it.columns()[1].1, it.greatest].map(|force| scale.cell(force)));
+            row.extend([it.p99(), it.greatest].map(|force| scale.cell(force)));
             row.extend(greatest);
-            row.extend([
-                impulses.cell(it.impulse(0.5)),
-                format!("{:.3}", it.speed(0.5)),
-            ]);
+            row.push(impulses.cell(it.impulse(0.5)));
+            row.push(format!("{:.3}", it.speed(0.5)));
             section.rows.push(row);
         }
         if !section.rows.is_empty() {
@@ -343,8 +309,8 @@ impl Told<'_> {
     }
 
     fn tensioners(&self) -> Section {
-        let columns = ["tensioner", "unit", "mean", "least", "greatest", "travel"];
-        let mut section = Section::new("tensioners", columns.map(str::to_owned));
+        let columns = "tensioner\tunit\tmean\tleast\tgreatest\ttravel";
+        let mut section = Section::new("tensioners", columns);
         for (name, unit, [travel, _]) in &self.summary.bodies().tensioners {
             let quantity = if unit == "rad" {
                 Measure::Angle
@@ -362,11 +328,8 @@ impl Told<'_> {
 
     /// Swing of the speeds, and transmission error.
     fn irregularity(&self) -> Section {
-        let columns = [
-            "sprocket".to_owned(),
-            "speed, greatest less least [%]".to_owned(),
-            "transmission error, peak to peak [deg]".to_owned(),
-        ];
+        let columns =
+            "sprocket\tspeed, greatest less least [%]\ttransmission error, peak to peak [deg]";
         let mut section = Section::new("speed irregularity and transmission error", columns);
         for (index, it) in self.summary.bodies().sprockets.iter().enumerate() {
             let mean = it.speed.mean();
@@ -380,16 +343,15 @@ impl Told<'_> {
             } else {
                 figure(it.lag.range().to_degrees())
             };
-            section
-                .rows
-                .push(vec![it.name.clone(), figure(100.0 * irregularity), lag]);
+            let irregularity = figure(100.0 * irregularity);
+            section.rows.push(vec![it.name.clone(), irregularity, lag]);
         }
         section
     }
 
     /// Power of the chains against their rating.
     fn utilisation(&self) -> Section {
-        let mut section = Section::new("utilisation", []);
+        let mut section = Section::new("utilisation", "");
         for rating in self.summary.ratings() {
             section.sentences.extend(rated(&rating));
         }
@@ -397,7 +359,7 @@ impl Told<'_> {
     }
 
     fn inputs(&self) -> Section {
-        let mut section = Section::new("inputs that were assumed", []);
+        let mut section = Section::new("inputs that were assumed", "");
         let left_out = left_out(&self.simulation.assembled().drive);
         let left_out = (!left_out.is_empty())
             .then(|| format!("The model leaves out {}.", left_out.join(", ")));
@@ -426,6 +388,15 @@ impl Told<'_> {
     }
 }
 
+/// Words before a text; nothing where it is empty.
+fn after(words: &str, text: &str) -> String {
+    if text.is_empty() {
+        String::new()
+    } else {
+        format!("{words}{text}")
+    }
+}
+
 /// Unknown intervals of quantiles: one or more.
 fn is_blank(of: &Steadiness) -> bool {
     of.p1.half_width.is_nan() || of.p99.half_width.is_nan()
@@ -442,11 +413,7 @@ fn half_width(scale: &Scale, value: f64) -> String {
 
 /// The hardest pulled link of a chain, against what breaks it.
 fn strength(load: &Load) -> String {
-    let of = if load.chain.is_empty() {
-        String::new()
-    } else {
-        format!(" of {}", load.chain)
-    };
+    let of = after(" of ", &load.chain);
     let pull = Measure::Force.told(load.tension);
     let breaks = match load.strength.breaking_load {
         Some(breaking) => format!(
@@ -473,11 +440,7 @@ fn rated(rating: &Rating) -> Vec<String> {
     let Some(sprocket) = &rating.sprocket else {
         return Vec::new();
     };
-    let of = if rating.chain.is_empty() {
-        String::new()
-    } else {
-        format!(" {}", rating.chain)
-    };
+    let of = after(" ", &rating.chain);
     let carried = Measure::Power.told(rating.carried);
     let power = match (&rating.limits, rating.governing()) {
         (Ok(limits), Some((by, power))) => {
@@ -488,11 +451,7 @@ fn rated(rating: &Rating) -> Vec<String> {
                     None => format!("{} not rated, source missing", it.by.name()),
                 })
                 .collect();
-            let others = if others.is_empty() {
-                String::new()
-            } else {
-                format!("; {}", others.join(", "))
-            };
+            let others = after("; ", &others.join(", "));
             let service = if (rating.service_factor - 1.0).abs() > f64::EPSILON {
                 format!(" with the service factor {}", figure(rating.service_factor))
             } else {

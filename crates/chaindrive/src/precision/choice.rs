@@ -4,16 +4,18 @@ use std::fmt;
 
 use chaindrive_mechanics::Assembled;
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
+use super::Watch;
 use super::compare::{Pair, rms};
 use super::horizon::Horizon;
 use super::short_runs::{Beginning, ShortRuns};
 use super::trace::{Gap, Strands, Trace};
 use super::variant::{CAUTION, Candidates, Entry, Variant};
 use super::window::{Window, automatic, pinned, sharper};
-use super::{Attribute, Watch};
 use crate::figure::{Measure, duration, percent};
 use crate::scene::Quantity;
+use crate::zarr::Story;
 use crate::{Run, SimulationError, Stepping};
 
 /// An accuracy that is asked for.
@@ -442,28 +444,20 @@ impl Choice {
     /// The choice as attributes of a result.
     ///
     /// `is_missed`: whether the run finds in its own judgement that it does not keep the accuracy.
-    pub fn attributes(&self, is_missed: bool) -> Vec<(String, Attribute)> {
+    pub fn attributes(&self, is_missed: bool) -> Map<String, Value> {
+        let mut story = Story::default();
+        story.number("accuracy", self.accuracy);
         let kept = match (self.promise, self.kept) {
             (Promise::Nothing, _) => "nothing to compare",
             (_, true) if is_missed => "not kept",
             (_, true) => "kept",
             (_, false) => "not reached",
         };
-        let mut list = vec![
-            ("accuracy", Attribute::Number(self.accuracy)),
-            ("accuracy_kept", Attribute::Text(kept.to_owned())),
-            ("choice", Attribute::Text(self.reason())),
-            (
-                "accuracy_evaluations",
-                Attribute::Number(self.evaluations as f64),
-            ),
-        ];
-        if self.error.is_finite() {
-            list.push(("accuracy_error", Attribute::Number(self.error)));
-        }
-        list.into_iter()
-            .map(|(name, value)| (name.to_owned(), value))
-            .collect()
+        story.text("accuracy_kept", kept);
+        story.text("choice", &self.reason());
+        story.number("accuracy_evaluations", self.evaluations as f64);
+        story.number("accuracy_error", self.error);
+        story.0
     }
 
     /// The choice and its reason, in a sentence.

@@ -267,25 +267,82 @@ impl Comparison {
     }
 }
 
-/// Relative errors of a run \[–\]; NaN where there is nothing to compare.
+/// A column of the table of a study.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Errors {
+pub struct Number {
+    /// Name.
+    pub name: &'static str,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Description, in a line.
+    pub description: &'static str,
+    /// Value; NaN where there is none.
+    pub value: f64,
+}
+
+macro_rules! errors {
+    ($($(#[$doc:meta])* $field:ident, $name:literal, $column:literal, $text:literal;)*) => {
+        /// Relative errors of a run \[–\]; NaN where there is nothing to compare.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct Errors {
+            $($(#[$doc])* pub $field: f64,)*
+        }
+
+        impl Errors {
+            /// The larger of both, number by number; for the spread of several replicates.
+            pub(super) fn larger(self, other: &Self) -> Self {
+                Self { $($field: self.$field.max(other.$field),)* }
+            }
+
+            /// Errors of something that was not compared.
+            pub(super) fn none() -> Self {
+                Self { $($field: f64::NAN,)* }
+            }
+
+            /// Name and value of every error.
+            pub fn columns(&self) -> [(&'static str, f64); 10] {
+                [$(($name, self.$field)),*]
+            }
+
+            /// Every error as a column of the table of a study.
+            pub fn numbers(&self) -> [Number; 10] {
+                [$(Number { name: $column, unit: "1", description: $text, value: self.$field }),*]
+            }
+        }
+    };
+}
+
+errors! {
     /// Tension of all spans at every moment up to the horizon: root mean square, over the mean tension.
-    pub tension: f64,
+    tension, "tension", "error_span_tension",
+        "error of the span tensions up to the horizon, rms over the mean tension";
     /// The same of the tightest span.
-    pub tight_tension: f64,
+    tight_tension, "tight_tension", "error_tight_span_tension",
+        "error of the tightest span's tension up to the horizon, rms over the mean tension";
     /// Force between every roller and the teeth up to the horizon: root mean square, over that of the force.
-    pub force: f64,
+    force, "contact_force", "error_contact_force",
+        "error of the roller-tooth forces up to the horizon, rms over their rms";
     /// Rotation of the sprockets up to the horizon: root mean square, over the largest rotation.
-    pub angle: f64,
+    angle, "sprocket_angle", "error_sprocket_angle",
+        "error of the sprockets' rotation up to the horizon, rms over the largest rotation";
     /// Mean tension over the whole window, of the span that differs most.
-    pub mean: f64,
+    mean, "tension_mean", "error_span_tension_mean",
+        "error of the mean span tension over the window";
     /// Root mean square of the tension over the whole window, of the span that differs most.
-    pub rms: f64,
-    /// 50th, 90th and 99th percentile of the contact forces over the whole window.
-    pub percentiles: [f64; 3],
+    rms, "tension_rms", "error_span_tension_rms",
+        "error of the root mean square of the span tension over the window";
+    /// Median of the contact forces over the whole window.
+    p50, "contact_force_p50", "error_contact_force_p50",
+        "error of the median contact force over the window";
+    /// 90th percentile of the contact forces over the whole window.
+    p90, "contact_force_p90", "error_contact_force_p90",
+        "error of the 90th percentile of the contact force over the window";
+    /// 99th percentile of the contact forces over the whole window.
+    p99, "contact_force_p99", "error_contact_force_p99",
+        "error of the 99th percentile of the contact force over the window";
     /// Amplitude of the tight span's tension at the frequency of the passing teeth.
-    pub mesh: f64,
+    mesh, "mesh_amplitude", "error_mesh_amplitude",
+        "error of the tight span's amplitude at the frequency of the passing teeth";
 }
 
 impl Errors {
@@ -302,7 +359,8 @@ impl Errors {
         let samples = from.time.iter().take_while(|t| **t <= horizon).count();
         let distances = pair.distances();
         let inside = || distances.iter().take(samples);
-        let [mean, root] = pair.moments();
+        let [mean, rms_of_tension] = pair.moments();
+        let [p50, p90, p99] = pair.percentiles();
         // Without the tension of a span there is no amplitude of it.
         let period = period.filter(|_| strands == Strands::Spans);
         Self {
@@ -311,52 +369,12 @@ impl Errors {
             force: pair.first(samples).force(),
             angle: pair.first(samples).angle(),
             mean,
-            rms: root,
-            percentiles: pair.percentiles(),
+            rms: rms_of_tension,
+            p50,
+            p90,
+            p99,
             mesh: period.map_or(f64::NAN, |period| pair.mesh(period)),
         }
-    }
-
-    /// The larger of both, number by number; for the spread of several replicates.
-    pub(super) fn larger(self, other: &Self) -> Self {
-        let [own, other] = [self.columns(), other.columns()];
-        Self::filled(|k| own[k].1.max(other[k].1))
-    }
-
-    /// Errors of something that was not compared.
-    pub(super) fn none() -> Self {
-        Self::filled(|_| f64::NAN)
-    }
-
-    /// Errors by their places among the columns.
-    fn filled(value: impl Fn(usize) -> f64) -> Self {
-        Self {
-            tension: value(0),
-            tight_tension: value(1),
-            force: value(2),
-            angle: value(3),
-            mean: value(4),
-            rms: value(5),
-            percentiles: [6, 7, 8].map(&value),
-            mesh: value(9),
-        }
-    }
-
-    /// Name and value of every error, as columns of a table.
-    pub fn columns(&self) -> [(&'static str, f64); 10] {
-        let [p50, p90, p99] = self.percentiles;
-        [
-            ("tension", self.tension),
-            ("tight_tension", self.tight_tension),
-            ("contact_force", self.force),
-            ("sprocket_angle", self.angle),
-            ("tension_mean", self.mean),
-            ("tension_rms", self.rms),
-            ("contact_force_p50", p50),
-            ("contact_force_p90", p90),
-            ("contact_force_p99", p99),
-            ("mesh_amplitude", self.mesh),
-        ]
     }
 }
 

@@ -1,14 +1,18 @@
 //! The estimate of a run, or why there is none, in words and as attributes of a result.
 
-use std::fmt;
+use std::fmt::{self, Write as _};
 
+use serde_json::{Map, Value};
+
+use super::Watch;
 use super::compare::Comparison;
 use super::estimate::{ChannelHorizon, Estimate, estimate_with};
 use super::horizon::Divergence;
 use super::short_runs::ShortRuns;
 use super::trace::Strands;
-use super::{Attribute, Watch};
 use crate::figure::{duration, percent};
+use crate::sheet::{NAMES, aligned, lines};
+use crate::zarr::Story;
 use crate::{Channel, Run, Simulation, SimulationError};
 
 /// Statement about the error of a run, made at its end.
@@ -59,84 +63,62 @@ impl Judgement {
     }
 
     /// Attributes of a result: `error_estimate`, and the findings.
-    pub fn attributes(&self) -> Vec<(String, Attribute)> {
+    pub fn attributes(&self) -> Map<String, Value> {
+        let mut story = Story::default();
         let word = match self {
-            Self::Made(_) => "made".to_owned(),
-            Self::SwitchedOff => "switched off".to_owned(),
-            Self::Interrupted => "interrupted".to_owned(),
-            Self::Failed(reason) => format!("failed: {reason}"),
+            Self::Made(_) => "made",
+            Self::SwitchedOff => "switched off",
+            Self::Interrupted => "interrupted",
+            Self::Failed(reason) => &format!("failed: {reason}"),
         };
-        let mut list = vec![("error_estimate".to_owned(), Attribute::Text(word))];
-        list.extend(
-            self.estimate()
-                .map(Estimate::attributes)
-                .unwrap_or_default(),
-        );
-        list
+        story.text("error_estimate", word);
+        if let Some(estimate) = self.estimate() {
+            estimate.attributes(&mut story);
+        }
+        story.0
     }
 }
 
 impl fmt::Display for Judgement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Made(estimate) => estimate.fmt(f),
-            Self::SwitchedOff => write!(f, "numerical error          not estimated: switched off"),
-            Self::Interrupted => write!(f, "numerical error          not estimated: interrupted"),
-            Self::Failed(reason) => {
-                write!(f, "numerical error          not estimated: {reason}")
-            }
-        }
+        let why = match self {
+            Self::Made(estimate) => return estimate.fmt(f),
+            Self::SwitchedOff => "switched off",
+            Self::Interrupted => "interrupted",
+            Self::Failed(reason) => reason,
+        };
+        write!(f, "{:NAMES$} not estimated: {why}", "numerical error")
     }
 }
 
 impl Estimate {
-    /// Everything, as attributes of a result: names, and texts or numbers.
-    pub fn attributes(&self) -> Vec<(String, Attribute)> {
-        let mut list = Vec::new();
-        let mut text =
-            |name: &str, text: String| list.push((name.to_owned(), Attribute::Text(text)));
-        text("error_shadow", self.shadow.to_owned());
-        text("error_compared", self.compared_channel().name().to_owned());
-        if let Some(gap) = &self.gap {
-            text("error_gap", gap.to_string());
-        }
-        text("chaos_note", self.horizon.sentence());
-        text("chaos_note_tight_span", self.horizon.tight_sentence());
-        text("waveform_note", self.waveform_note());
-        let mut number = |name: &str, value: f64| {
-            if value.is_finite() {
-                list.push((name.to_owned(), Attribute::Number(value)));
-            }
+    /// Tells everything.
+    fn attributes(&self, story: &mut Story) {
+        let strand = match self.strands {
+            Strands::Spans => "span",
+            Strands::Links => "link",
         };
+        story.text("error_shadow", self.shadow);
+        story.text("error_compared", self.compared_channel().name());
+        if let Some(gap) = &self.gap {
+            story.text("error_gap", &gap.to_string());
+        }
+        story.text("chaos_note", &self.horizon.sentence());
+        story.text("chaos_note_tight_span", &self.horizon.tight_sentence());
+        story.text("waveform_note", &self.waveform_note());
+        let mut number = |name: &str, value: f64| story.number(name, value);
         number("error_window", self.window);
         number("error_factor", self.factor);
-        let (all, tight) = match self.strands {
-            Strands::Spans => ("error_span_tension", "error_tight_span_tension"),
-            Strands::Links => ("error_link_tension", "error_tight_link_tension"),
-        };
-        number(all, self.tension);
-        number(tight, self.tight_tension);
-        let force = |of: fn(&Comparison) -> f64| self.force.iter().map(of).fold(f64::NAN, f64::max);
-        number("error_contact_force", force(|compared| compared.difference));
-        let [p50, p90, p99] = self.force;
-        let tension = match self.strands {
-            Strands::Spans => "span_tension",
-            Strands::Links => "link_tension",
-        };
-        let of_tension = |statistic: &str| format!("{tension}_{statistic}");
-        let [mean, rms, std] = ["mean", "rms", "std"].map(of_tension);
-        let tails = ["p1", "p99"].map(of_tension);
-        let [deviation, low, high] = self.scatter;
-        for (name, compared) in [
-            (mean.as_str(), self.mean),
-            (rms.as_str(), self.rms),
-            (std.as_str(), deviation),
-            (tails[0].as_str(), low),
-            (tails[1].as_str(), high),
-            ("contact_force_p50", p50),
-            ("contact_force_p90", p90),
-            ("contact_force_p99", p99),
-        ] {
+        number(&format!("error_{strand}_tension"), self.tension);
+        number(&format!("error_tight_{strand}_tension"), self.tight_tension);
+        let of_forces = self.force.iter().map(|it| it.difference);
+        number("error_contact_force", of_forces.fold(f64::NAN, f64::max));
+        let of_tensions = ["mean", "rms", "std", "p1", "p99"];
+        let of_tensions = of_tensions.map(|it| format!("{strand}_tension_{it}"));
+        let of_forces = ["p50", "p90", "p99"].map(|it| format!("contact_force_{it}"));
+        let names = of_tensions.into_iter().chain(of_forces);
+        let compared = [self.mean, self.rms].into_iter().chain(self.scatter);
+        for (name, compared) in names.zip(compared.chain(self.force)) {
             number(&format!("error_{name}"), compared.difference);
             number(&format!("spread_{name}"), compared.spread);
         }
@@ -155,11 +137,10 @@ impl Estimate {
                 number(&format!("lyapunov_time{name}"), lyapunov);
             }
         }
-        number("waveform_horizon", self.waveform.unwrap_or(f64::NAN));
-        let links = self.link_waveform.unwrap_or(f64::NAN);
-        number("waveform_horizon_link_tension", links);
+        let or_nan = |time: Option<f64>| time.unwrap_or(f64::NAN);
+        number("waveform_horizon", or_nan(self.waveform));
+        number("waveform_horizon_link_tension", or_nan(self.link_waveform));
         number("error_evaluations", self.evaluations as f64);
-        list
     }
 
     /// Reach of the waveforms, and of the examination.
@@ -202,58 +183,49 @@ impl fmt::Display for Comparison {
 
 impl fmt::Display for Estimate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (all, tight) = match (self.strands, &self.gap) {
-            (Strands::Spans, _) => ("span tension", "tight span"),
-            (Strands::Links, _) => ("link tension", "tightest link"),
+        let mut sheet = String::new();
+        self.tell(&mut sheet)?;
+        f.write_str(&aligned(sheet.trim_end(), NAMES))
+    }
+}
+
+impl Estimate {
+    fn tell(&self, sheet: &mut String) -> fmt::Result {
+        let (all, tight) = match self.strands {
+            Strands::Spans => ("span tension", "tight span"),
+            Strands::Links => ("link tension", "tightest link"),
         };
-        writeln!(
-            f,
-            "numerical error          in the first {}, by {}",
-            duration(self.window),
-            self.shadow
-        )?;
+        lines! { sheet; "numerical error\tin the first {}, by {}", duration(self.window), self.shadow; }
         if let Some(gap) = &self.gap {
-            writeln!(f, "  span tension           not examined: {gap}")?;
+            lines! { sheet; "  span tension\tnot examined: {gap}"; }
         }
         if self.tension.is_nan() {
-            return write!(
-                f,
-                "  nothing to compare     the chain carries no tension there"
-            );
+            lines! { sheet; "  nothing to compare\tthe chain carries no tension there"; }
+            return Ok(());
         }
-        writeln!(
-            f,
-            "  {all}, waveform {} of the mean tension; {tight} {}",
-            percent(self.tension),
-            percent(self.tight_tension)
-        )?;
-        writeln!(f, "  {all}, average  mean {}, rms {}", self.mean, self.rms)?;
+        let [tension, tightest] = [self.tension, self.tight_tension].map(percent);
         let [deviation, low, high] = &self.scatter;
-        writeln!(
-            f,
-            "  {all}, scatter  std {deviation}, p1 {low}, p99 {high} of the mean tension"
-        )?;
+        lines! { sheet;
+            "  {all}, waveform\t{tension} of the mean tension; {tight} {tightest}";
+            "  {all}, average\tmean {}, rms {}", self.mean, self.rms;
+            "  {all}, scatter\tstd {deviation}, p1 {low}, p99 {high} of the mean tension";
+        }
         let [p50, p90, p99] = &self.force;
         if p50.difference.is_finite() {
-            writeln!(
-                f,
-                "  contact force          p50 {p50}, p90 {p90}, p99 {p99}"
-            )?;
+            lines! { sheet; "  contact force\tp50 {p50}, p90 {p90}, p99 {p99}"; }
         }
         for it in &self.impacts {
             let [p50, p99, impulse, speed] = it.columns().map(|(_, error)| percent(error));
-            writeln!(
-                f,
-                "  {:22} force p50 {p50}, p99 {p99}, impulse {impulse}, closing speed {speed}; {} compared",
-                format!("impacts on {}", it.sprocket),
-                it.compared
-            )?;
+            lines! { sheet;
+                "  impacts on {}\tforce p50 {p50}, p99 {p99}, impulse {impulse}, closing speed {speed}; {} compared",
+                    it.sprocket, it.compared;
+            }
         }
-        writeln!(f, "chaos                    {}", self.horizon.sentence())?;
+        lines! { sheet; "chaos\t{}", self.horizon.sentence(); }
         if self.horizon.tight.time() != self.horizon.all.time() {
-            let sentence = self.horizon.tight_sentence();
-            writeln!(f, "  {tight:22} {sentence}")?;
+            lines! { sheet; "  {tight}\t{}", self.horizon.tight_sentence(); }
         }
-        write!(f, "waveforms                {}", self.waveform_note())
+        lines! { sheet; "waveforms\t{}", self.waveform_note(); }
+        Ok(())
     }
 }

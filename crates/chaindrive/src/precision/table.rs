@@ -1,143 +1,44 @@
 //! The work-precision table as text: to read, and to store.
 
-use std::fmt;
+use std::fmt::{self, Write as _};
 use std::io::Write;
 
-use super::Errors;
+use super::compare::{Errors, Number};
 use super::work::{Row, Table};
 use crate::figure::percent;
+use crate::sheet::{NAMES, aligned, lines};
 
-/// A column of the table.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Number {
-    /// Name.
-    pub name: &'static str,
-    /// SI unit.
-    pub unit: &'static str,
-    /// Description, in a line.
-    pub description: &'static str,
-    /// Value; NaN where there is none.
-    pub value: f64,
+macro_rules! numbers {
+    ($($name:literal, $unit:literal, $text:literal, $value:expr;)*) => {
+        [$(Number { name: $name, unit: $unit, description: $text, value: $value }),*]
+    };
 }
-
-/// Names of the columns of [`Errors`], in their order.
-const ERRORS: [(&str, &str); 10] = [
-    (
-        "error_span_tension",
-        "error of the span tensions up to the horizon, rms over the mean tension",
-    ),
-    (
-        "error_tight_span_tension",
-        "error of the tightest span's tension up to the horizon, rms over the mean tension",
-    ),
-    (
-        "error_contact_force",
-        "error of the roller-tooth forces up to the horizon, rms over their rms",
-    ),
-    (
-        "error_sprocket_angle",
-        "error of the sprockets' rotation up to the horizon, rms over the largest rotation",
-    ),
-    (
-        "error_span_tension_mean",
-        "error of the mean span tension over the window",
-    ),
-    (
-        "error_span_tension_rms",
-        "error of the root mean square of the span tension over the window",
-    ),
-    (
-        "error_contact_force_p50",
-        "error of the median contact force over the window",
-    ),
-    (
-        "error_contact_force_p90",
-        "error of the 90th percentile of the contact force over the window",
-    ),
-    (
-        "error_contact_force_p99",
-        "error of the 99th percentile of the contact force over the window",
-    ),
-    (
-        "error_mesh_amplitude",
-        "error of the tight span's amplitude at the frequency of the passing teeth",
-    ),
-];
 
 impl Row {
     /// The numbers of a row, in the order of the columns.
     pub fn numbers(&self) -> Vec<Number> {
         let counts = &self.statistics;
-        let rejected = counts.rejections + counts.error_rejections + counts.newton_failures;
-        let missing = |value: Option<f64>| value.unwrap_or(f64::NAN);
-        let or_failed = |count: u64| {
+        let or_nan = |value: Option<f64>| value.unwrap_or(f64::NAN);
+        let counted = |count: u64| {
             if self.failure.is_none() {
                 count as f64
             } else {
                 f64::NAN
             }
         };
-        let head = [
-            (
-                "step",
-                "s",
-                "step, or longest step under error control",
-                missing(self.variant.step),
-            ),
-            (
-                "tolerance",
-                "1",
-                "relative tolerance under error control",
-                missing(self.variant.tolerance),
-            ),
-            (
-                "onset_depth",
-                "m",
-                "deepest first penetration accepted",
-                missing(self.variant.onset_depth),
-            ),
-            ("wall", "s", "wall time, median", self.wall),
-            ("cpu", "s", "time on the processor, median", self.cpu),
-            (
-                "real_time_factor",
-                "1",
-                "simulated over wall time",
-                self.real_time_factor,
-            ),
-            ("steps", "1", "accepted steps", or_failed(counts.steps)),
-            (
-                "evaluations",
-                "1",
-                "evaluations of the forces",
-                or_failed(counts.evaluations),
-            ),
-            (
-                "solves",
-                "1",
-                "linear equations solved",
-                or_failed(counts.solves),
-            ),
-            (
-                "rejections",
-                "1",
-                "candidate steps rejected",
-                or_failed(rejected),
-            ),
-        ];
-        let head = head.map(|(name, unit, description, value)| Number {
-            name,
-            unit,
-            description,
-            value,
-        });
-        let errors = ERRORS.iter().zip(self.errors.columns());
-        let errors = errors.map(|((name, description), (_, value))| Number {
-            name,
-            unit: "1",
-            description,
-            value,
-        });
-        head.into_iter().chain(errors).collect()
+        let head = numbers! {
+            "step", "s", "step, or longest step under error control", or_nan(self.variant.step);
+            "tolerance", "1", "relative tolerance under error control", or_nan(self.variant.tolerance);
+            "onset_depth", "m", "deepest first penetration accepted", or_nan(self.variant.onset_depth);
+            "wall", "s", "wall time, median", self.wall;
+            "cpu", "s", "time on the processor, median", self.cpu;
+            "real_time_factor", "1", "simulated over wall time", self.real_time_factor;
+            "steps", "1", "accepted steps", counted(counts.steps);
+            "evaluations", "1", "evaluations of the forces", counted(counts.evaluations);
+            "solves", "1", "linear equations solved", counted(counts.solves);
+            "rejections", "1", "candidate steps rejected", counted(counts.rejected());
+        };
+        head.into_iter().chain(self.errors.numbers()).collect()
     }
 
     /// Remark on the row; empty if there is none.
@@ -196,105 +97,67 @@ impl Table {
 }
 
 /// Errors of one line of the printed table.
-fn errors(errors: &Errors) -> String {
-    let [p50, p90, p99] = errors.percentiles;
-    let columns = [
-        errors.tension,
-        errors.tight_tension,
-        errors.force,
-        errors.angle,
-        errors.mean,
-        errors.rms,
-        p50.max(p90).max(p99),
-        errors.mesh,
-    ];
-    columns
-        .map(|value| format!("{:>9}", percent(value)))
-        .join(" ")
+fn errors(of: &Errors) -> String {
+    let percentiles = of.p50.max(of.p90).max(of.p99);
+    let waves = [of.tension, of.tight_tension, of.force, of.angle];
+    let columns = waves
+        .into_iter()
+        .chain([of.mean, of.rms, percentiles, of.mesh]);
+    columns.map(percent).collect::<Vec<_>>().join("\t")
 }
 
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut sheet = String::new();
+        self.tell(&mut sheet)?;
+        f.write_str(&aligned(sheet.trim_end(), NAMES))
+    }
+}
+
+impl Table {
+    fn tell(&self, sheet: &mut String) -> fmt::Result {
         if let Some(ran_in) = &self.ran_in {
-            writeln!(f, "{ran_in}")?;
+            writeln!(sheet, "{ran_in}")?;
         }
-        writeln!(f, "window                   {:.3e} s", self.window)?;
-        writeln!(f, "reference                {}", self.reference.describe())?;
-        writeln!(
-            f,
-            "checked by               {}: {} apart in tension, {} in the tight span",
-            self.check.describe(),
-            percent(self.agreement.tension),
-            percent(self.agreement.tight_tension)
-        )?;
+        let (reference, check) = (self.reference.describe(), self.check.describe());
+        let apart = [self.agreement.tension, self.agreement.tight_tension];
+        let [apart, apart_tight] = apart.map(percent);
+        lines! { sheet;
+            "window\t{:.3e} s", self.window;
+            "reference\t{reference}";
+            "checked by\t{check}: {apart} apart in tension, {apart_tight} in the tight span";
+        }
         if let Some(gap) = &self.gap {
-            writeln!(f, "tension                  of the links: {gap}")?;
+            lines! { sheet; "tension\tof the links: {gap}"; }
         }
-        writeln!(f, "chaos                    {}", self.horizon.sentence())?;
-        writeln!(
-            f,
-            "  tight span             {}",
-            self.horizon.tight_sentence()
-        )?;
-        writeln!(
-            f,
-            "times are medians of {}; spread is that of {} replicates; errors are relative; wave: up to the horizon, statistics: over the window",
-            self.repeats, self.replicates
-        )?;
-        writeln!(
-            f,
-            "{:60} {:>9} {:>9} {:>9} {:>9} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}",
-            "method",
-            "wall [s]",
-            "cpu [s]",
-            "real time",
-            "forces",
-            "reject",
-            "tension",
-            "tight",
-            "contact",
-            "angle",
-            "mean T",
-            "rms T",
-            "contact %",
-            "mesh"
-        )?;
+        lines! { sheet;
+            "chaos\t{}", self.horizon.sentence();
+            "  tight span\t{}", self.horizon.tight_sentence();
+            "times are medians of {}; spread is that of {} replicates; errors are relative; wave: up to the horizon, statistics: over the window", self.repeats, self.replicates;
+            "method\twall [s]\tcpu [s]\treal time\tforces\treject\ttension\ttight\tcontact\tangle\tmean T\trms T\tcontact %\tmesh";
+        }
         for row in &self.rows {
+            let method = row.variant.describe();
             if let Some(why) = &row.failure {
-                writeln!(f, "{:60} {why}", row.variant.describe())?;
+                lines! { sheet; "  {method}{}{why}", "\t".repeat(14); }
                 continue;
             }
-            let counts = &row.statistics;
-            writeln!(
-                f,
-                "{:60} {:>9.4} {:>9.4} {:>9.3} {:>9} {:>7} {}{}",
-                row.variant.describe(),
-                row.wall,
-                row.cpu,
-                row.real_time_factor,
-                counts.evaluations,
-                counts.rejections + counts.error_rejections + counts.newton_failures,
-                errors(&row.errors),
-                if row.reference_limited {
-                    "  reference limited"
-                } else {
-                    ""
-                }
-            )?;
+            let (counts, errors) = (&row.statistics, errors(&row.errors));
+            let (wall, cpu, ratio) = (row.wall, row.cpu, row.real_time_factor);
+            let (forces, rejected) = (counts.evaluations, counts.rejected());
+            let limited = if row.reference_limited {
+                "\treference limited"
+            } else {
+                ""
+            };
+            lines! { sheet;
+                "  {method}\t{wall:.4}\t{cpu:.4}\t{ratio:.3}\t{forces}\t{rejected}\t{errors}{limited}";
+            }
         }
-        writeln!(
-            f,
-            "{:60} {:>47} {}",
-            "reference and check apart",
-            "",
-            errors(&self.agreement)
-        )?;
-        write!(
-            f,
-            "{:60} {:>47} {}",
-            "spread of replicates",
-            "",
-            errors(&self.spread)
-        )
+        lines! { sheet;
+            "  reference and check apart\t\t\t\t\t\t{}", errors(&self.agreement);
+            "  spread of replicates\t\t\t\t\t\t{}", errors(&self.spread);
+        }
+        Ok(())
     }
 }

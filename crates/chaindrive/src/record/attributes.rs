@@ -12,8 +12,9 @@ use serde_json::{Map, Value};
 use crate::RanIn;
 use crate::Summary;
 use crate::page::{Page, numerics};
-use crate::precision::{Attribute, Choice, Judgement};
+use crate::precision::{Choice, Judgement};
 use crate::rating::Rating;
+use crate::statistic::Statistic;
 use crate::zarr::{Ending, Story};
 use crate::{Reason, Run, Scene, Simulation, Stepping, Verdict};
 
@@ -68,14 +69,14 @@ impl Provenance {
     }
 }
 
-/// Everything that a result says about itself; what sums it up only where there is a summary, at the end.
+/// Everything that a result says about itself; what sums it up only at the end, where there are a summary and a verdict.
 ///
 /// Wall times are the only attributes that two runs of one request do not share: `stepping_time`, `real_time_factor`,
 /// `ns_per_link_step`, `wall_time`, and the line `speed` in `numerics`.
 pub fn attributes(
     provenance: &Provenance,
     simulation: &Simulation,
-    summary: Option<&Summary>,
+    ended: Option<(&Summary, &Verdict)>,
     samples: u64,
     ending: &Ending,
     judgement: Option<&Judgement>,
@@ -117,7 +118,7 @@ pub fn attributes(
     story.number("smallest_step", statistics.smallest_step);
     story.number("largest_step", statistics.largest_step);
     story.number("energy_residual_last", simulation.energy_residual());
-    if let Some(summary) = summary {
+    if let Some((summary, _)) = ended {
         story.number("energy_supplied", summary.energy_supplied());
         story.number("energy_dissipated", summary.energy_dissipated());
         story.number("energy_moved", summary.energy_moved());
@@ -137,9 +138,12 @@ pub fn attributes(
         story.number("energy_residual_largest", summary.residual);
         story.number("contact_force_largest", summary.forces().max);
         for it in summary.impacts().iter().filter(|it| it.count > 0) {
-            story.count(&format!("impact_count_{}", it.sprocket), it.count);
-            for (name, value) in it.columns() {
-                story.number(&format!("{name}_{}", it.sprocket), value);
+            for (statistic, value) in Statistic::of_impacts(it) {
+                let name = format!("{}_{}", statistic.name(), it.sprocket);
+                match statistic {
+                    Statistic::ImpactCount => story.count(&name, it.count),
+                    _ => story.number(&name, value),
+                }
             }
         }
     }
@@ -147,41 +151,30 @@ pub fn attributes(
     speed(&mut story, simulation, provenance.wall_time());
     let choice = provenance.choice.as_ref();
     let mut is_missed = false;
-    let verdict = summary.map(|summary| {
-        let verdict = Verdict::of(
-            summary,
-            simulation,
-            provenance.ran_in.as_ref(),
-            choice,
-            judgement,
-        );
+    if let Some((summary, verdict)) = ended {
         let ran_in = provenance.ran_in.as_ref();
         let assumed = &provenance.assumed;
-        let page = Page::of(&verdict, summary, simulation, ran_in, judgement, assumed);
+        let page = Page::of(verdict, summary, simulation, ran_in, judgement, assumed);
         story.text("summary", &page.to_string());
         // Texts and lists of texts always become JSON.
         story.text("page", &serde_json::to_string(&page).unwrap_or_default());
-        let numerics = numerics(&verdict, summary, simulation, choice, judgement);
+        let numerics = numerics(verdict, summary, simulation, choice, judgement);
         story.text("numerics", &numerics);
         let missed = |it: &Reason| matches!(it, Reason::AccuracyMissed { .. });
         is_missed = verdict.reasons.iter().any(missed);
-        verdict.attributes()
-    });
+    }
+    let verdict = ended.map(|(_, verdict)| verdict.attributes());
     let choice = choice.map(|it| it.attributes(is_missed));
     let judgement = judgement.map(Judgement::attributes);
     // A percentile that the impacts are too few to tell has no error.
-    let struck = summary.into_iter().flat_map(Summary::impacts);
+    let struck = ended.into_iter().flat_map(|(summary, _)| summary.impacts());
     let few = struck.filter(|it| !it.tells(0.99));
     let few: Vec<String> = few
         .map(|it| format!("error_impact_force_p99_{}", it.sprocket))
         .collect();
     let all = [verdict, choice, judgement].into_iter().flatten().flatten();
-    for (name, value) in all.filter(|(name, _)| !few.contains(name)) {
-        match value {
-            Attribute::Text(text) => story.text(&name, &text),
-            Attribute::Number(number) => story.number(&name, number),
-        }
-    }
+    let all = all.filter(|(name, _)| !few.contains(name));
+    story.0.extend(all);
     story.0
 }
 

@@ -58,24 +58,18 @@ impl ImpactStatistics {
         }
     }
 
-    /// Names and values in results: forces \[N\], median impulse \[N s\], median closing speed \[m/s\]; NaN where nothing struck, or too few to
-    /// [tell](Self::tells) the quantile.
-    pub fn columns(&self) -> [(&'static str, f64); 5] {
-        let of = |value: f64| if self.count > 0 { value } else { f64::NAN };
-        [
-            ("impact_force_p50", of(self.force(0.5))),
-            (
-                "impact_force_p99",
-                if self.tells(0.99) {
-                    self.force(0.99)
-                } else {
-                    f64::NAN
-                },
-            ),
-            ("impact_force_max", of(self.greatest)),
-            ("impact_impulse", of(self.impulse(0.5))),
-            ("impact_speed", of(self.speed(0.5))),
-        ]
+    /// A number of the impacts; NaN where nothing struck.
+    pub(crate) fn of_any(&self, value: f64) -> f64 {
+        if self.count > 0 { value } else { f64::NAN }
+    }
+
+    /// 99th percentile of the largest forces \[N\]; NaN where the impacts are too few to [tell](Self::tells) it.
+    pub fn p99(&self) -> f64 {
+        if self.tells(0.99) {
+            self.force(0.99)
+        } else {
+            f64::NAN
+        }
     }
 
     /// Whether the impacts are enough to tell a quantile above the median: one of them at least lies beyond it.
@@ -131,11 +125,11 @@ mod tests {
                 peak_force: n as f64,
                 impulse: 1.0,
             });
-            let [(_, p50), (_, p99), (_, greatest), ..] = statistics.columns();
-            assert!(p50.is_finite() && (greatest - n as f64).abs() < 1e-9);
+            let (p99, greatest) = (statistics.p99(), statistics.greatest);
+            assert!((greatest - n as f64).abs() < 1e-9);
             assert_eq!(p99.is_finite(), n == 100, "{n}: {p99}");
         }
-        let p99 = statistics.columns()[1].1;
+        let p99 = statistics.p99();
         assert!((p99 - 99.0).abs() < 0.1, "{p99}");
     }
 }

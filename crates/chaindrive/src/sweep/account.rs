@@ -10,185 +10,14 @@ use super::Outcome;
 use crate::channel::labels;
 use crate::event::EventTable;
 use crate::execute::execute_by;
-use crate::precision::{Choice, Promise};
+use crate::precision::Choice;
 use crate::record::Provenance;
-use crate::summary::{ContactStatistics, ImpactStatistics, SpanStatistics, Steadiness};
+use crate::statistic::{KIND, SPAN, SPROCKET, Statistic};
 use crate::verdict::WrittenVerdict;
 use crate::{
     Channel, End, Recording, Report, Request, RequestError, RunError, Scene, Settings, Simulation,
-    SimulationError, Sink, Stepping, Stop, Summary,
+    SimulationError, Sink, Stepping, Stop,
 };
-
-macro_rules! statistics {
-    ($($variant:ident, $name:literal, $unit:literal, $along:expr, $text:literal;)*) => {
-        /// A number, or a number a span or kind of contact, that sums up a run.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum Statistic {
-            $(#[doc = $text] $variant,)*
-        }
-
-        impl Statistic {
-            /// All statistics.
-            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
-
-            /// Name in results.
-            pub fn name(self) -> &'static str {
-                match self { $(Self::$variant => $name),* }
-            }
-
-            /// SI unit.
-            pub fn unit(self) -> &'static str {
-                match self { $(Self::$variant => $unit),* }
-            }
-
-            /// Dimension of its entries, if it has more than one.
-            pub fn along(self) -> Option<&'static str> {
-                match self { $(Self::$variant => $along),* }
-            }
-
-            /// One line of description.
-            pub fn description(self) -> &'static str {
-                match self { $(Self::$variant => $text),* }
-            }
-        }
-    };
-}
-
-/// Dimension of statistics by kind of contact, see [`EventTable::KINDS`].
-const KIND: &str = "contact_kind";
-
-/// Dimension of statistics by sprocket.
-const SPROCKET: &str = "sprocket";
-
-statistics! {
-    SpanTensionMean, "span_tension_mean", "N", Some("span"), "mean of the span tension over whole periods of the slowest forcing";
-    SpanTensionHalfWidth, "span_tension_half_width", "N", Some("span"), "half width of the 95 % interval of the mean; NaN below three periods";
-    SpanTensionStd, "span_tension_std", "N", Some("span"), "standard deviation of the span tension";
-    SpanTensionStdHalfWidth, "span_tension_std_half_width", "N", Some("span"), "half width of the 95 % interval of the standard deviation; NaN below three periods";
-    SpanTensionP1, "span_tension_p1", "N", Some("span"), "tension that the span has less of in 1 % of the time";
-    SpanTensionP1HalfWidth, "span_tension_p1_half_width", "N", Some("span"), "half width of its 95 % interval; NaN below three periods, and where they are too few to tell it";
-    SpanTensionP99, "span_tension_p99", "N", Some("span"), "tension that the span has less of in 99 % of the time";
-    SpanTensionP99HalfWidth, "span_tension_p99_half_width", "N", Some("span"), "half width of its 95 % interval; NaN below three periods, and where they are too few to tell it";
-    SpanTensionMin, "span_tension_min", "N", Some("span"), "least sample of the span tension";
-    SpanTensionMax, "span_tension_max", "N", Some("span"), "greatest sample of the span tension";
-    ContactForceP50, "contact_force_p50", "N", None, "median of the forces of loaded rollers on teeth";
-    ContactForceP90, "contact_force_p90", "N", None, "90th percentile of the forces of loaded rollers on teeth";
-    ContactForceP99, "contact_force_p99", "N", None, "99th percentile of the forces of loaded rollers on teeth";
-    ContactForceMax, "contact_force_max", "N", None, "largest sample of the forces of rollers on teeth";
-    ImpactCount, "impact_count", "1", Some(SPROCKET), "number of impacts of rollers that came to the sprocket";
-    ImpactForceP50, "impact_force_p50", "N", Some(SPROCKET), "median of the largest forces of impacts";
-    ImpactForceP99, "impact_force_p99", "N", Some(SPROCKET), "99th percentile of the largest forces of impacts; NaN below 100 impacts";
-    ImpactForceMax, "impact_force_max", "N", Some(SPROCKET), "largest force of all impacts";
-    ImpactImpulse, "impact_impulse", "N s", Some(SPROCKET), "median of the impulses of impacts";
-    ImpactSpeed, "impact_speed", "m/s", Some(SPROCKET), "median of the closing speeds of impacts, along the normal of the tooth";
-    EnergySupplied, "energy_supplied_total", "J", None, "energy put in by drivers, motions and torques";
-    EnergyDissipated, "energy_dissipated_total", "J", None, "energy lost";
-    EnergyResidualMax, "energy_residual_max", "J", None, "largest energy unaccounted for, with its sign";
-    ContactCount, "contact_count", "1", Some(KIND), "number of contacts logged";
-    ContactPeakMean, "contact_peak_mean", "N", Some(KIND), "mean of the largest forces of the contacts logged";
-    ContactPeakMax, "contact_peak_max", "N", Some(KIND), "largest force of the contacts logged";
-    ContactDuration, "contact_duration", "s", Some(KIND), "sum of the durations of the contacts logged";
-    AccuracyError, "accuracy_error", "1", None, "bound of the error found when method and step were chosen for an accuracy, on one of up to 32 variants that are alike";
-    AccuracyKept, "accuracy_kept", "1", None, "1 where the accuracy asked for is kept, 0 where no method on the list keeps it";
-    StepChosen, "step_chosen", "s", None, "step of the method that was chosen for an accuracy";
-    Samples, "samples", "1", None, "number of samples";
-    Steps, "steps", "1", None, "number of steps";
-    Rejections, "rejections", "1", None, "number of steps that were rejected";
-    Evaluations, "evaluations", "1", None, "number of evaluations of the forces";
-    TimeReached, "time_reached", "s", None, "end of the run";
-    SteppingTime, "stepping_time", "s", None, "wall time spent in stepping";
-    RealTimeFactor, "real_time_factor", "1", None, "time simulated over wall time";
-}
-
-impl Statistic {
-    /// The statistics that every run has.
-    pub fn of_every_run() -> impl Iterator<Item = Self> {
-        let all = Self::ALL.iter().copied();
-        all.filter(|it| !it.is_of_logged_contacts() && !it.is_of_a_choice())
-    }
-
-    /// Whether it belongs to contacts that have to be logged.
-    pub fn is_of_logged_contacts(self) -> bool {
-        self.along() == Some(KIND)
-    }
-
-    /// Whether it belongs to an accuracy that has to be asked for.
-    pub fn is_of_a_choice(self) -> bool {
-        matches!(
-            self,
-            Self::AccuracyError | Self::AccuracyKept | Self::StepChosen
-        )
-    }
-
-    /// Whether it is a measurement of the machine: all others are the same with every run.
-    pub fn is_measured(self) -> bool {
-        matches!(self, Self::SteppingTime | Self::RealTimeFactor)
-    }
-
-    fn read(self, simulation: &Simulation, summary: &Summary, choice: Option<&Choice>) -> Vec<f64> {
-        let spans = |of: fn(&SpanStatistics) -> f64| {
-            let values = summary.spans.iter().map(of);
-            // A span without a single finite sample has neither a least nor a greatest one.
-            values
-                .map(|value| if value.is_finite() { value } else { f64::NAN })
-                .collect()
-        };
-        let known = |of: fn(&Steadiness) -> f64| {
-            let spans = summary.steadiness().into_iter();
-            spans.map(|it| it.as_ref().map_or(f64::NAN, of)).collect()
-        };
-        let contacts = |of: fn(&ContactStatistics) -> f64| {
-            summary.contacts(simulation).iter().map(of).collect()
-        };
-        let impacts = |of: fn(&ImpactStatistics) -> f64| summary.impacts().iter().map(of).collect();
-        let counts = simulation.statistics();
-        let number = match self {
-            Self::SpanTensionMean => return known(|it| it.mean.value),
-            Self::SpanTensionHalfWidth => return known(|it| it.mean.half_width),
-            Self::SpanTensionStd => return known(|it| it.deviation.value),
-            Self::SpanTensionStdHalfWidth => return known(|it| it.deviation.half_width),
-            Self::SpanTensionP1 => return known(|it| it.p1.value),
-            Self::SpanTensionP1HalfWidth => return known(|it| it.p1.half_width),
-            Self::SpanTensionP99 => return known(|it| it.p99.value),
-            Self::SpanTensionP99HalfWidth => return known(|it| it.p99.half_width),
-            Self::SpanTensionMin => return spans(|span| span.least),
-            Self::SpanTensionMax => return spans(|span| span.greatest),
-            Self::ContactCount => return contacts(|kind| kind.count as f64),
-            Self::ContactPeakMean => return contacts(ContactStatistics::mean),
-            Self::ContactPeakMax => return contacts(|kind| kind.greatest),
-            Self::ContactDuration => return contacts(|kind| kind.duration),
-            Self::ImpactCount => return impacts(|it| it.count as f64),
-            Self::ImpactForceP50 => return impacts(|it| it.columns()[0].1),
-            Self::ImpactForceP99 => return impacts(|it| it.columns()[1].1),
-            Self::ImpactForceMax => return impacts(|it| it.columns()[2].1),
-            Self::ImpactImpulse => return impacts(|it| it.columns()[3].1),
-            Self::ImpactSpeed => return impacts(|it| it.columns()[4].1),
-            Self::ContactForceP50 => summary.forces().p50,
-            Self::ContactForceP90 => summary.forces().p90,
-            Self::ContactForceP99 => summary.forces().p99,
-            Self::ContactForceMax => summary.forces().max,
-            Self::EnergySupplied => summary.energy_supplied(),
-            Self::EnergyDissipated => summary.energy_dissipated(),
-            Self::EnergyResidualMax => summary.residual,
-            Self::AccuracyError => choice.map_or(f64::NAN, |choice| choice.error),
-            Self::AccuracyKept => match choice {
-                Some(choice) if choice.promise != Promise::Nothing => f64::from(choice.kept),
-                _ => f64::NAN,
-            },
-            Self::StepChosen => simulation.method().step(),
-            Self::Samples => summary.samples as f64,
-            Self::Steps => counts.steps as f64,
-            Self::Rejections => {
-                (counts.rejections + counts.error_rejections + counts.newton_failures) as f64
-            }
-            Self::Evaluations => counts.evaluations as f64,
-            Self::TimeReached => simulation.time(),
-            Self::SteppingTime => simulation.stepping_time(),
-            Self::RealTimeFactor => simulation.time() / simulation.stepping_time(),
-        };
-        vec![number]
-    }
-}
 
 /// A statistic or a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -210,28 +39,27 @@ impl Quantity {
             .or_else(|| channel().map(|&found| Self::Channel(found)))
     }
 
+    /// Whichever of two readers is that of its kind.
+    fn read<T>(self, of_statistic: fn(Statistic) -> T, of_channel: fn(Channel) -> T) -> T {
+        match self {
+            Self::Statistic(statistic) => of_statistic(statistic),
+            Self::Channel(channel) => of_channel(channel),
+        }
+    }
+
     /// Name in results.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Statistic(statistic) => statistic.name(),
-            Self::Channel(channel) => channel.name(),
-        }
+        self.read(Statistic::name, Channel::name)
     }
 
     /// SI unit; of a channel whose unit depends on the drive, all that it may be.
     pub fn unit(self) -> &'static str {
-        match self {
-            Self::Statistic(statistic) => statistic.unit(),
-            Self::Channel(channel) => channel.unit(),
-        }
+        self.read(Statistic::unit, Channel::unit)
     }
 
     /// One line of description.
     pub fn description(self) -> &'static str {
-        match self {
-            Self::Statistic(statistic) => statistic.description(),
-            Self::Channel(channel) => channel.description(),
-        }
+        self.read(Statistic::description, Channel::description)
     }
 
     /// Whether it has an entry a sample.
@@ -241,10 +69,7 @@ impl Quantity {
 
     /// Dimension of its entries beside time, if any.
     pub fn along(self) -> Option<&'static str> {
-        match self {
-            Self::Statistic(statistic) => statistic.along(),
-            Self::Channel(channel) => channel.axis().name(),
-        }
+        self.read(Statistic::along, |channel| channel.axis().name())
     }
 }
 
@@ -412,7 +237,7 @@ impl Account {
             method: Stepping::from(simulation.method()).name().to_owned(),
             time: recording.time,
             labels: vec![
-                ("span".into(), names.collect()),
+                (SPAN.into(), names.collect()),
                 (SPROCKET.into(), simulation.system().sprocket_names()),
             ],
             entries: Vec::new(),

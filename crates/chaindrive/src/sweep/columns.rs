@@ -1,7 +1,8 @@
 //! Figures of a variant that the report of a sweep has.
 
-use super::{Account, Quantity, Statistic};
+use super::{Account, Quantity};
 use crate::figure::with_digits;
+use crate::statistic::Statistic;
 
 /// A figure of a variant.
 pub(super) struct Column {
@@ -9,33 +10,21 @@ pub(super) struct Column {
     pub(super) read: fn(&Account) -> f64,
 }
 
-/// The columns of the table.
-pub(super) const COLUMNS: [Column; 6] = [
-    Column {
-        heading: "span max [N]",
-        read: |account| account.largest(Statistic::SpanTensionMax),
-    },
-    Column {
-        heading: "span std [N]",
-        read: |account| account.largest(Statistic::SpanTensionStd),
-    },
-    Column {
-        heading: "contact max [N]",
-        read: |account| account.largest(Statistic::ContactForceMax),
-    },
-    Column {
-        heading: "dissipated [J]",
-        read: |account| account.largest(Statistic::EnergyDissipated),
-    },
-    Column {
-        heading: "unaccounted [J]",
-        read: |account| account.largest(Statistic::EnergyResidualMax).abs(),
-    },
-    Column {
-        heading: "× real time",
-        read: |account| account.largest(Statistic::RealTimeFactor),
-    },
-];
+macro_rules! columns {
+    ($($heading:literal, $read:expr;)*) => {
+        /// The columns of the table.
+        pub(super) const COLUMNS: [Column; 6] = [$(Column { heading: $heading, read: $read }),*];
+    };
+}
+
+columns! {
+    "span max [N]", |it| it.largest(Statistic::SpanTensionMax);
+    "span std [N]", |it| it.largest(Statistic::SpanTensionStd);
+    "contact max [N]", |it| it.largest(Statistic::ContactForceMax);
+    "dissipated [J]", |it| it.largest(Statistic::EnergyDissipated);
+    "unaccounted [J]", |it| it.largest(Statistic::EnergyResidualMax).abs();
+    "× real time", |it| it.largest(Statistic::RealTimeFactor);
+}
 
 impl Account {
     /// Whether no method on the list kept the accuracy that was asked for.

@@ -1,9 +1,10 @@
 //! The short account that ends a sweep.
 
-use std::fmt::{self, Write};
+use std::fmt;
 
 use super::columns::{COLUMNS, short};
 use super::{Dimension, Outcome, Sweep, Tally};
+use crate::sheet::aligned;
 
 /// Variants of which each has its line; of more, only the extremes are told.
 const LINES: usize = 40;
@@ -46,46 +47,39 @@ impl Sweep {
 impl fmt::Display for Report<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.sweep.has_a_line_each() {
-            self.variants(f)?;
+            f.write_str(&self.variants())?;
         }
         write!(f, "{}", Tally::of(self.outcomes).summary(self.sweep))
     }
 }
 
 impl Report<'_> {
-    /// A line a variant.
-    fn variants(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    /// A line a variant, all figures right.
+    fn variants(&self) -> String {
         let dimensions = self.sweep.dimensions();
-        let widths: Vec<usize> = dimensions.iter().map(width).collect();
-        let mut heading = String::new();
-        for (dimension, &width) in dimensions.iter().zip(&widths) {
-            write!(heading, "{:>width$}  ", title(dimension))?;
-        }
-        for column in &COLUMNS {
-            write!(heading, "{:>15}  ", column.heading)?;
-        }
-        writeln!(f, "{}", heading.trim_end())?;
+        let headings = COLUMNS.iter().map(|it| it.heading.to_owned());
+        let headings: Vec<String> = dimensions.iter().map(title).chain(headings).collect();
+        let mut lines = vec![headings.join("\t")];
         for (index, outcome) in self.outcomes.iter().enumerate() {
-            let mut line = String::new();
-            let places = self.sweep.indices(index);
-            for ((dimension, at), &width) in dimensions.iter().zip(places).zip(&widths) {
-                write!(line, "{:>width$}  ", dimension.values.short(at))?;
-            }
+            let places = dimensions.iter().zip(self.sweep.indices(index));
+            let mut cells: Vec<String> = places.map(|(it, at)| it.values.short(at)).collect();
             match outcome {
                 Outcome::Done(account) => {
-                    for column in &COLUMNS {
-                        write!(line, "{:>15}  ", short((column.read)(account)))?;
-                    }
-                    if account.verdict.is_distrusted() {
-                        line.push_str("distrusted");
-                    }
+                    cells.extend(COLUMNS.iter().map(|it| short((it.read)(account))));
+                    cells.extend(
+                        account
+                            .verdict
+                            .is_distrusted()
+                            .then(|| "distrusted".to_owned()),
+                    );
                 }
-                Outcome::Failed(_) => line.push_str("failed"),
-                Outcome::Open => line.push_str("not carried out"),
+                Outcome::Failed(_) => cells.push("failed".to_owned()),
+                Outcome::Open => cells.push("not carried out".to_owned()),
             }
-            writeln!(f, "{}", line.trim_end())?;
+            lines.push(cells.join("\t"));
         }
-        Ok(())
+        // The first column is of figures too, so that of the names before it is empty.
+        aligned(&format!("\t{}\n", lines.join("\n\t")), 0)
     }
 }
 
@@ -94,13 +88,4 @@ fn title(dimension: &Dimension) -> String {
         Some(unit) if unit != "1" => format!("{} [{unit}]", dimension.name),
         _ => dimension.name.clone(),
     }
-}
-
-fn width(dimension: &Dimension) -> usize {
-    let values = (0..dimension.values.len()).map(|at| dimension.values.short(at));
-    let widths = values.map(|text| text.chars().count());
-    widths
-        .max()
-        .unwrap_or(0)
-        .max(title(dimension).chars().count())
 }

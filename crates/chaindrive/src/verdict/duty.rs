@@ -44,7 +44,7 @@ pub(super) fn found(summary: &Summary, simulation: &Simulation) -> Vec<Reason> {
     }
     let drive = &simulation.assembled().drive;
     let fights = drive.fights(0.0, simulation.time()).into_iter();
-    reasons.extend(fights.map(Reason::MotionsFight));
+    reasons.extend(fights.map(|fight| Reason::MotionsFight { fight }));
     reasons
 }
 

@@ -134,8 +134,7 @@ fn the_worst_reason_decides_and_comes_first() {
     let verdict = Verdict::from_reasons(vec![caution.clone(), worst.clone()]);
     assert_eq!(verdict.trust, Trust::Distrusted);
     assert_eq!(verdict.reasons, [worst, caution.clone()]);
-    let names = &verdict.attributes()[1];
-    assert_eq!(names.1, Attribute::Text("not-finite too-short".to_owned()));
+    assert_eq!(verdict.attributes()["reasons"], "not-finite too-short");
     assert!(verdict.warning().is_some_and(|line| !line.contains("few")));
 
     let cautious = Verdict::from_reasons(vec![caution]);
@@ -285,10 +284,12 @@ fn specimens() -> Vec<Reason> {
             every: 1e-2,
             needed: 5e-3,
         },
-        Reason::MotionsFight(Fight {
-            sprockets: ["a", "b"].map(str::to_owned),
-            teeth: 3.0,
-        }),
+        Reason::MotionsFight {
+            fight: Fight {
+                sprockets: ["a", "b"].map(str::to_owned),
+                teeth: 3.0,
+            },
+        },
         Reason::NotEstimated {
             why: "switched off".to_owned(),
         },

@@ -34,6 +34,7 @@ impl Ending {
 }
 
 /// Attributes in the order of their telling.
+#[derive(Default)]
 pub(crate) struct Story(pub(crate) Map<String, Value>);
 
 impl Story {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use chaindrive::catalogue::{CatalogueChain, Number, catalogue as chains};
 use chaindrive::figure::{Measure, with_digits};
 use chaindrive::scene::{chain_named, presets};
-use chaindrive::{Build, Channel, InstructionSet, Origin, Scene};
+use chaindrive::{Build, Channel, InstructionSet, Origin, Scene, aligned};
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -25,10 +25,10 @@ pub(crate) fn scenes(arguments: &Scenes) -> Result<(), Failure> {
     if let Some(name) = &arguments.name {
         return print(Scene::preset(name)?.text().trim_end());
     }
-    for (name, what) in presets() {
-        print(format_args!("{name:22} {what}"))?;
-    }
-    Ok(())
+    let lines = presets()
+        .iter()
+        .map(|(name, what)| format!("{name}\t{what}"));
+    print(aligned(&lines.collect::<Vec<_>>().join("\n"), 22))
 }
 
 /// Lists what a run can record.
@@ -104,12 +104,10 @@ pub(crate) fn channels(arguments: &Channels) -> Result<(), Failure> {
             Recorded::WhereBodiesMove => "+",
             Recorded::OnDemand => " ",
         };
+        let (name, unit, what) = (channel.name, channel.unit, channel.description);
+        let dimension = channel.dimension.unwrap_or("");
         print(format_args!(
-            "{default} {:20} {:6} {:10} {}",
-            channel.name,
-            channel.unit,
-            channel.dimension.unwrap_or(""),
-            channel.description
+            "{default} {name:20} {unit:6} {dimension:10} {what}"
         ))?;
     }
     print(
@@ -124,25 +122,16 @@ pub(crate) fn version(verbose: bool) -> Result<(), Failure> {
     if !verbose {
         return Ok(());
     }
-    let names = |sets: &mut dyn Iterator<Item = InstructionSet>| {
-        sets.map(InstructionSet::name)
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
     print(build)?;
-    print(format_args!(
-        "kernels for   {}",
-        names(&mut InstructionSet::built())
-    ))?;
-    print(format_args!(
-        "processor has {}",
-        names(&mut InstructionSet::available())
-    ))?;
+    let built: Vec<_> = InstructionSet::built().map(InstructionSet::name).collect();
+    print(format_args!("kernels for   {}", built.join(", ")))?;
+    let available: Vec<_> = InstructionSet::available()
+        .map(InstructionSet::name)
+        .collect();
+    print(format_args!("processor has {}", available.join(", ")))?;
     InstructionSet::in_use().map_err(|error| Failure::Argument(error.to_string()))?;
-    print(format_args!(
-        "in use        {}",
-        Origin::here().instruction_set
-    ))
+    let in_use = Origin::here().instruction_set;
+    print(format_args!("in use        {in_use}"))
 }
 
 /// Lists the chains that a scene can name, or all that is known of one.
@@ -226,40 +215,26 @@ const SHOWN: [(Number, &str, f64); 8] = [
 ];
 
 pub(crate) fn catalogue(arguments: &Catalogue) -> Result<(), Failure> {
-    if let Some(name) = &arguments.name {
-        let chain = chain_named(name).map_err(|problem| Failure::Argument(problem.to_string()));
-        let chain = chain?;
-        if arguments.json {
-            let chains = vec![ChainEntry::of(chain)];
-            return answer(&ChainList { chains });
-        }
-        return entry(chain);
-    }
+    let known = arguments.name.as_deref().map(chain_named).transpose();
+    let known = known.map_err(|problem| Failure::Argument(problem.to_string()))?;
     if arguments.json {
-        let chains = chains().iter().map(ChainEntry::of).collect();
+        let all = known.map_or(chains(), std::slice::from_ref);
+        let chains = all.iter().map(ChainEntry::of).collect();
         return answer(&ChainList { chains });
     }
-    let heading = SHOWN.map(|(_, heading, _)| format!("{heading:>10}"));
-    print(format_args!(
-        "{:8} {:>5} {:>6} {}",
-        "chain",
-        "ANSI",
-        "kind",
-        heading.join(" ")
-    ))?;
-    for chain in chains() {
-        let cells = SHOWN.map(|(number, _, per)| match chain.number(number) {
-            Some(value) => format!("{:>10}", with_digits(value * per, DIGITS)),
-            None => format!("{:>10}", "–"),
-        });
-        print(format_args!(
-            "{:8} {:>5} {:>6} {}",
-            chain.name,
-            chain.ansi,
-            chain.kind,
-            cells.join(" ")
-        ))?;
+    if let Some(chain) = known {
+        return entry(chain);
     }
+    let headings = SHOWN.map(|(_, heading, _)| heading);
+    let mut text = format!("chain\tANSI\tkind\t{}", headings.join("\t"));
+    for chain in chains() {
+        text += &format!("\n{}\t{}\t{}", chain.name, chain.ansi, chain.kind);
+        for (number, _, per) in SHOWN {
+            let value = chain.number(number).map(|it| with_digits(it * per, DIGITS));
+            text += &format!("\t{}", value.as_deref().unwrap_or("–"));
+        }
+    }
+    print(aligned(&text, 0))?;
     print("`chaindrive catalogue NAME` tells all, and where it is from")
 }
 
@@ -275,20 +250,15 @@ fn told(number: Number, value: f64) -> String {
 }
 
 fn entry(chain: &CatalogueChain) -> Result<(), Failure> {
-    print(&chain.name)?;
+    let mut text = chain.name.clone();
     for number in Number::ALL {
-        let value = chain
-            .number(number)
-            .map_or_else(|| "–".to_owned(), |value| told(number, value));
-        print(format_args!(
-            "  {:16} {value:>19}  {} [{}]",
-            number.name(),
-            number.description(),
-            chain.status(number.status())
-        ))?;
+        let value = chain.number(number).map(|it| told(number, it));
+        let (name, value) = (number.name(), value.as_deref().unwrap_or("–"));
+        let (what, source) = (number.description(), chain.status(number.status()));
+        text += &format!("\n  {name}\t{value}\t{what} [{source}]");
     }
     if !chain.makers_differ.is_empty() {
-        print(format_args!("  makers differ: {}", chain.makers_differ))?;
+        text += &format!("\n  makers differ: {}", chain.makers_differ);
     }
-    Ok(())
+    print(aligned(&text, 0))
 }

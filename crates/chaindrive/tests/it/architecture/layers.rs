@@ -47,7 +47,7 @@ const CRATES: [Storeys; 6] = [
     Storeys {
         folder: "chaindrive",
         layers: &[
-            &["figure", "laws", "plain", "rainflow", "stepping"],
+            &["figure", "laws", "plain", "rainflow", "sheet", "stepping"],
             &["identity"],
             &["catalogue", "design", "draw", "rating", "seal"],
             &["error", "scene"],
@@ -57,7 +57,7 @@ const CRATES: [Storeys; 6] = [
             &["summary"],
             &["run_in"],
             &["precision"],
-            &["verdict"],
+            &["statistic", "verdict"],
             &["describe"],
             &["page"],
             &["record"],
