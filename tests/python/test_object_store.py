@@ -163,7 +163,6 @@ def test_killed_and_resumed_no_variant_is_lost_twice_or_different(server, tmp_pa
     assert_same(resumed, cd.sweep(ring(), design=design, **run))
 
 
-@pytest.mark.costs("the server is a Python program, and answers a request after the other")
 def test_ctrl_c_leaves_a_store_that_says_so(server, in_memory):
     """Requests to the store go on meanwhile, and none of them takes Ctrl-C for its own error."""
     store = bucket(server, "interrupted.zarr")
