@@ -50,7 +50,7 @@ test: check test-rust test-python ## Run all checks, and every test that guards 
 quick: $(VENV)/test-ready ## Check format, lints and types, test what changed, and run one small drive
 	$(BIN)/python tests/quick.py
 
-slowest: $(VENV)/test-ready ## List the twenty slowest tests of each language, after a run of all
+slowest: setup $(VENV)/test-ready ## List the slowest tests of each language, and those above 3 CPU s without a reason
 	$(BIN)/python tests/slowest.py
 
 check: check-rust check-python ## Check format, lints, documentation and types
@@ -106,7 +106,7 @@ docs: ## Build the reference of the Rust crates in target/doc
 
 pages: setup $(VENV)/site-ready docs ## Build the documentation in target/site; tutorials are run
 	rm -rf target/site
-	$(BIN)/sphinx-build -W --keep-going -q -d target/site-trees docs target/site
+	$(BIN)/sphinx-build -W --keep-going -q -j 2 -d target/site-trees docs target/site
 	cp -r target/doc target/site/rust
 
 site: browser pages ## Build the documentation, and test replays and reports in a browser

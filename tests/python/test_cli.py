@@ -1,6 +1,7 @@
 """The command that comes with the package, and the example scripts."""
 
 import os
+import runpy
 import subprocess
 import sys
 import sysconfig
@@ -17,8 +18,10 @@ COMMAND = Path(sysconfig.get_path("scripts")) / "chaindrive"
 LONG = ["gallery", "run_up", "sweep_marine"]
 # A picture of a browser, taken where one is at hand.
 WITH_A_BROWSER = ["replay_picture"]
+# What units of this one do is tested by test_coupling.py.
+TESTED = ["coupled_units"]
 SHORT = [
-    script
+    pytest.param(script, marks=pytest.mark.slow if script.stem in TESTED else [], id=script.stem)
     for script in sorted((ROOT / "examples").glob("*.py"))
     if script.stem not in [*LONG, *WITH_A_BROWSER]
 ]
@@ -77,19 +80,18 @@ def test_long_examples_run(name, tmp_path):
     assert list(tmp_path.glob("*.png"))
 
 
-@pytest.mark.parametrize("script", SHORT, ids=lambda script: script.stem)
-def test_examples_run(script, tmp_path):
-    environment = os.environ | {"MPLBACKEND": "Agg"}
+@pytest.mark.parametrize("script", SHORT)
+def test_examples_run(script, tmp_path, monkeypatch):
+    """In this process: what a script imports is imported once."""
+    plt = pytest.importorskip("matplotlib.pyplot")
     text = script.read_text(encoding="utf-8")
     short = {"--until": "0.01", "--rounds": "1"}
-    done = run(
-        sys.executable,
-        script,
-        *(word for option, value in short.items() if option in text for word in (option, value)),
-        "--results",
-        tmp_path,
-        cwd=tmp_path,
-        env=environment,
-    )
-    assert done.returncode == 0, done.stderr
+    options = [
+        word for option, value in short.items() if option in text for word in (option, value)
+    ]
+    monkeypatch.setattr(sys, "argv", [str(script), *options, "--results", str(tmp_path)])
+    monkeypatch.chdir(tmp_path)
+    plt.switch_backend("Agg")
+    runpy.run_path(str(script), run_name="__main__")
+    plt.close("all")
     assert (tmp_path / f"{script.stem}.png").stat().st_size > 10_000

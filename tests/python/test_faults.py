@@ -146,7 +146,7 @@ def test_a_fault_is_named(
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::chaindrive.VerdictWarning")
-@pytest.mark.parametrize("preset", [name for name, _ in cd._core.presets()])
+@pytest.mark.parametrize("preset", cd.scenes.presets())
 def test_presets_have_no_fault_but_those_that_they_are_known_for(preset: str) -> None:
     """The drive of the paper strikes fast, a motorcycle's steps are long, derailleurs bend."""
     known = {

@@ -1,6 +1,7 @@
 """What the command prints for programs: JSON of the form that its schema says, and tables."""
 
 import csv
+import functools
 import io
 import json
 import signal
@@ -46,6 +47,7 @@ def closed(schema: Any) -> Any:
     return [closed(it) for it in schema] if isinstance(schema, list) else schema
 
 
+@functools.cache
 def schema(of: str) -> Any:
     return closed(json.loads(command("schema", of).stdout))
 
@@ -59,7 +61,17 @@ def answer(*arguments: str) -> Any:
     return document
 
 
-@pytest.mark.parametrize("preset", cd.scenes.presets())
+# Particles with guides and a tensioner, rigid links, several chains, a chain without sprockets.
+QUICK = ["marine_engine", "bicycle", "two_stage_timing", "hanging_chain"]
+
+
+@pytest.mark.parametrize(
+    "preset",
+    [
+        pytest.param(preset, marks=[] if preset in QUICK else pytest.mark.slow)
+        for preset in cd.scenes.presets()
+    ],
+)
 def test_answers_about_every_preset_are_of_the_form_of_their_schema(preset):
     checked = answer("check", preset)["scenes"]
     assert [it["scene"] for it in checked] == [preset]

@@ -70,6 +70,7 @@ def test_every_executor_stores_the_bits_of_the_sweep_in_memory(server, in_memory
         assert again.attrs["status"] == "complete"
 
 
+@pytest.mark.costs("imports and starts the server, which is a Python program")
 def test_an_address_is_enough(server, in_memory, monkeypatch):
     monkeypatch.setenv("AWS_ENDPOINT_URL", server)
     monkeypatch.setenv("AWS_ALLOW_HTTP", "true")
@@ -128,9 +129,8 @@ def chunks(store):
     return {entry["path"] for entries in store.list("error/c/") for entry in entries}
 
 
-@pytest.mark.parametrize(
-    ("how", "kills"), [("threads", 1), pytest.param("spawn", 3, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("how", "kills"), [("threads", 1), ("spawn", 3)])
 def test_killed_and_resumed_no_variant_is_lost_twice_or_different(server, tmp_path, how, kills):
     """Resumed in this process: to start one and import what it needs takes seconds."""
     script = tmp_path / "script.py"
@@ -163,24 +163,26 @@ def test_killed_and_resumed_no_variant_is_lost_twice_or_different(server, tmp_pa
     assert_same(resumed, cd.sweep(ring(), design=design, **run))
 
 
-def test_ctrl_c_leaves_a_store_that_says_so(server, tmp_path):
+def test_ctrl_c_leaves_a_store_that_says_so(server, in_memory):
     """Requests to the store go on meanwhile, and none of them takes Ctrl-C for its own error."""
-    script = tmp_path / "script.py"
-    script.write_text(textwrap.dedent(SCRIPT))
     store = bucket(server, "interrupted.zarr")
-    arguments = [sys.executable, str(script), server, "interrupted.zarr", "threads"]
-    with subprocess.Popen(arguments, stderr=subprocess.PIPE, text=True) as process:
-        while not chunks(store):
-            assert process.poll() is None
-            time.sleep(0.01)
-        process.send_signal(signal.SIGINT)
-        told = process.communicate(timeout=60)[1]
-    assert "KeyboardInterrupt" in told
-    assert "the same call goes on" in told
+
+    def interrupt(share):
+        if share > 0.2:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt) as caught:
+        cd.sweep(ring(), SPEEDS, **RING, output=store, progress=interrupt)
+    assert "the same call goes on" in caught.value.__notes__[0]
     with pytest.warns(cd.ResultWarning, match="interrupted"):
-        assert 1 <= cd.open_result(store).attrs["finished"] < 6
+        assert 1 <= cd.open_result(store).attrs["finished"] < 8
+    begun = {path: bytes(store.get(path).bytes()) for path in chunks(store)}
+    assert_same(cd.sweep(ring(), SPEEDS, **RING, output=store), in_memory)
+    for path, contents in begun.items():
+        assert bytes(store.get(path).bytes()) == contents, "stored twice"
 
 
+@pytest.mark.costs("a process that imports all that it needs, and its forks")
 def test_workers_that_were_forked_are_told_of(server, tmp_path):
     """They would wait for ever: threads that speak to the store are not inherited."""
     script = tmp_path / "script.py"

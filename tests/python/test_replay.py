@@ -132,7 +132,9 @@ def test_size_of_a_page_stays_within_its_budget(run):
     run = cd.simulate(
         cd.scenes.marine_engine(),
         until=0.5,
+        run_in=0,
         every=1e-4,
+        method="verlet",
         record=CHANNELS,
         error=False,
     )

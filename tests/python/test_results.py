@@ -83,7 +83,7 @@ def test_arrays_are_contiguous_and_writable(marine):
 
 
 def test_default_channels_are_those_of_the_scene():
-    run = cd.simulate(cd.scenes.marine_engine(), until=1e-3, every=1e-3)
+    run = cd.simulate(cd.scenes.marine_engine(), until=1e-3, every=1e-3, run_in=0, error=False)
     defaults = cd.scenes.marine_engine().run_defaults["record"]
     assert list(run.data_vars) == defaults
     assert "span_tension" in run
@@ -91,7 +91,7 @@ def test_default_channels_are_those_of_the_scene():
 
 def test_provenance_reproduces_the_run():
     drive = cd.scenes.marine_engine().replace({"sprockets.crank.motion.speed": "-100 rpm"})
-    run = cd.simulate(drive, until=2e-3, every=1e-3, record="link_tension")
+    run = cd.simulate(drive, until=2e-3, every=1e-3, run_in=0, record="link_tension", error=False)
     story = run.attrs
     assert story["chaindrive_version"] == cd.__version__
     assert story["chaindrive_build"] == cd.__build__
@@ -108,7 +108,9 @@ def test_provenance_reproduces_the_run():
         cd.Drive.from_toml(story["scene"]),
         until=story["until"],
         every=story["every"],
+        run_in=0,
         record="link_tension",
+        error=False,
         method=story["method"],
         step=story["step"],
     )
@@ -176,7 +178,8 @@ def test_results_can_be_written_as_netcdf_attributes(marine):
 def test_zarr_holds_what_memory_holds(tmp_path):
     pytest.importorskip("zarr")
     drive = cd.scenes.marine_engine()
-    settings = {"until": 5e-3, "every": 1e-3, "record": ["span_tension", "roller_x", "contacts"]}
+    settings = {"until": 2e-3, "every": 1e-3, "run_in": 0}
+    settings["record"] = ["span_tension", "roller_x", "contacts"]
     memory = cd.simulate(drive, **settings)
     disk = cd.simulate(drive, **settings, output=tmp_path / "run.zarr")
     xr.testing.assert_equal(disk.load(), memory)
@@ -193,27 +196,27 @@ def test_zarr_holds_what_memory_holds(tmp_path):
 
 def test_a_run_says_how_exact_it_is() -> None:
     bare = cd.scenes.bicycle_slack().replace({"defaults": "0.1"})
-    run = cd.simulate(bare, until=12e-3, every=1e-3, record="span_tension")
+    run = cd.simulate(bare, until=6e-3, every=1e-3, run_in=0, record="span_tension")
     story = run.attrs
     assert story["error_estimate"] == "made"
     assert 0 < story["error_tight_span_tension"] < 0.05
     assert story["error_contact_force"] >= story["error_contact_force_p50"]
     assert "numerical error" in story["numerics"]
-    # The waveform is good for two milliseconds, twins for eight, and the variable says so.
-    assert run["span_tension"].attrs["waveform_horizon"] == story["waveform_horizon"] < 6e-3
+    # The waveform is good for two milliseconds, twins for six, and the variable says so.
+    assert run["span_tension"].attrs["waveform_horizon"] == story["waveform_horizon"] < 4e-3
     assert story["chaos_horizon"] > story["waveform_horizon"]
     assert run["span_tension"].attrs["waveform_horizon_of"] == "span_tension"
 
 
 def test_a_result_that_contradicts_itself_is_warned_of(recwarn: pytest.WarningsRecorder) -> None:
-    settings = {"every": 1e-5, "method": "implicit-damping", "error": False}
+    """The verdict itself is tested in Rust: here it becomes a warning."""
+    settings = {"every": 1e-5, "run_in": 0, "method": "implicit-damping", "error": False}
     changes = {"defaults": "0.1", "sprockets.chainring.motion.speed": "-5000 rpm"}
     fast = cd.scenes.bicycle().replace(changes)
     with pytest.warns(cd.DistrustedResultWarning, match="does not add up"):
-        run = cd.simulate(fast, until=3e-3, **settings)
+        run = cd.simulate(fast, until=3e-4, **settings)
     assert run.attrs["verdict"] == "distrusted"
     assert "energy-missing" in run.attrs["reasons"].split()
-    assert run.attrs["summary"].startswith("verdict: distrusted")
     recwarn.clear()
     settings["method"] = "verlet"
     run = cd.simulate(cd.scenes.marine_two_sprockets(), until=3e-3, **settings)
@@ -255,11 +258,11 @@ def test_the_line_and_functions_are_told_of_the_run_in() -> None:
 
     drive, told = cd.scenes.marine_two_sprockets(), Told()
     settings = {"method": "verlet", "until": 1e-3, "every": 1e-3, "error": False}
-    cd.simulate(drive, run_in=1.0, progress=told, **settings)
+    cd.simulate(drive, run_in=0.2, progress=told, **settings)
     assert told.shares
     assert all(0 <= share <= 1 for share in told.shares)
     plain: list[float] = []
-    cd.simulate(drive, run_in=1.0, progress=plain.append, **settings)
+    cd.simulate(drive, run_in=0.2, progress=plain.append, **settings)
     assert plain[0] == 0
     assert plain[-1] == 1
 
@@ -370,11 +373,11 @@ def test_an_interrupted_run_keeps_what_there_is():
 
     ring = cd.scenes.spinning_ring()
     with pytest.raises(KeyboardInterrupt) as caught:
-        cd.simulate(ring, until=1e4, every=1e-3, method="verlet", progress=stop)
+        cd.simulate(ring, until=1e3, every=1e-3, method="verlet", progress=stop)
     kept = caught.value.result
     assert kept.attrs["status"] == "interrupted"
     assert kept.attrs["error_estimate"] == "interrupted"
-    assert 0 < kept.sizes["time"] < 1e7
+    assert 0 < kept.sizes["time"] < 1e6
     assert kept.sizes["time"] == kept.attrs["samples"]
     assert "stop.result" in caught.value.__notes__[0]
 

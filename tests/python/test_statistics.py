@@ -17,10 +17,10 @@ def from_phases(name: str, phases: list[float], run_in: str, until: str) -> xr.D
 
 def test_the_phase_of_the_start_makes_no_other_drive() -> None:
     """The same chain on the same centres, wherever it begins: lengths of links to the last bits."""
-    for model in ("particles", "clearance-joints"):
+    for model, phases in [("particles", (0.0, 0.3, 0.5, 0.9)), ("clearance-joints", (0.0, 0.5))]:
         drives = [
             cd.scenes.bicycle().replace({"chain.model": model, "route.phase": phase})
-            for phase in (0.0, 0.3, 0.5, 0.9)
+            for phase in phases
         ]
         means = []
         for drive in drives:

@@ -24,59 +24,35 @@ cd.simulate(cd.scenes.bicycle_slack(), until=100.0, every=1e-4, run_in=0, error=
 posix = pytest.mark.skipif(sys.platform == "win32", reason="signals")
 
 
-@pytest.fixture
-def growing(tmp_path):
+class Growing:
     """A store with samples, and the process that writes it."""
-    store = tmp_path / "long.zarr"
-    with subprocess.Popen([sys.executable, "-c", LONG, store], stderr=subprocess.PIPE) as writer:
+
+    def __init__(self, store):
+        self.store = store
+        command = [sys.executable, "-c", LONG, store]
+        self.writer = subprocess.Popen(command, stderr=subprocess.DEVNULL)
         limit = time.monotonic() + 60
         while not (store.exists() and xr.open_zarr(store, chunks=None).sizes["time"]):
             assert time.monotonic() < limit, "no sample was committed"
             time.sleep(0.05)
-        yield store, writer
-        writer.kill()
 
-
-def test_chunks_agree_while_a_store_grows_and_when_it_is_stopped(growing):
-    store, writer = growing
-    assert xr.open_zarr(store).chunks["time"]
-    writer.kill()
-    writer.wait()
-    assert xr.open_zarr(store).chunks["time"]
-    # More samples than fit in a chunk of the widest array.
-    stopped = store.with_name("ring.zarr")
-    cd.simulate(
-        cd.scenes.spinning_ring(), until=0.08, every=1e-5, output=stopped, record="all", error=False
-    )
-    assert len(xr.open_zarr(stopped).chunks["time"]) == 2
-
-
-def test_a_result_is_running_or_was_killed(growing):
-    store, writer = growing
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        assert cd.open_result(store).attrs["status"] == "running"
-    writer.kill()
-    writer.wait()
-    with pytest.warns(cd.ResultWarning, match=r"long\.zarr: killed; it holds \d+ samples"):
-        killed = cd.open_result(store)
-    assert killed.attrs["status"] == "killed"
-    assert killed.sizes["time"] == killed.attrs["samples"] > 0
-    assert bool(killed["span_tension"].notnull().any())
+    def end(self):
+        self.writer.kill()
+        self.writer.wait()
 
 
 @posix
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
-def test_a_signal_takes_effect_when_the_result_says_so(growing, name):
-    store, writer = growing
+def test_a_signal_takes_effect_when_the_result_says_so(tmp_path, name):
     number = signal.Signals[name]
     if signal.getsignal(number) is signal.SIG_IGN:
         pytest.skip(f"{name} is ignored here, as under nohup, and by what is started here")
-    writer.send_signal(number)
-    writer.wait(60)
-    assert writer.returncode == -number
+    made = Growing(tmp_path / "long.zarr")
+    made.writer.send_signal(number)
+    made.writer.wait(60)
+    assert made.writer.returncode == -number
     with pytest.warns(cd.ResultWarning, match="interrupted; it holds"):
-        assert cd.open_result(store).attrs["status"] == "interrupted"
+        assert cd.open_result(made.store).attrs["status"] == "interrupted"
 
 
 @posix
@@ -95,13 +71,6 @@ def test_the_command_hears_signals_too(tmp_path):
 def test_a_result_that_is_not_there_is_told_by_name(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"none\.zarr: there is no result here; check"):
         cd.open_result(tmp_path / "none.zarr")
-
-
-def test_a_writer_keeps_others_out(growing):
-    store, writer = growing
-    with pytest.raises(cd.WriteError, match=f"process {writer.pid} is writing") as caught:
-        cd.simulate(cd.scenes.spinning_ring(), until=1e-3, output=store, overwrite=True)
-    assert "another name" in caught.value.hint
 
 
 @pytest.mark.parametrize("name", ["run.nc", "run", "run.csv"])
@@ -141,3 +110,50 @@ def test_a_sweep_with_failed_variants_is_not_complete():
     assert swept.attrs["status"] == "failed"
     assert swept.attrs["complete"] == 0
     assert swept.attrs["failure"] == "1 of 2 variants failed"
+
+
+# These come last: the writer ends with them.
+
+
+@pytest.fixture(scope="module")
+def growing(tmp_path_factory):
+    """For those who only look at it."""
+    made = Growing(tmp_path_factory.mktemp("growing") / "long.zarr")
+    yield made
+    made.end()
+
+
+@pytest.fixture(scope="module")
+def killed(tmp_path_factory):
+    made = Growing(tmp_path_factory.mktemp("killed") / "long.zarr")
+    made.end()
+    return made.store
+
+
+def test_chunks_agree_while_a_store_grows_and_when_it_is_stopped(killed, growing, tmp_path):
+    assert xr.open_zarr(growing.store).chunks["time"]
+    assert xr.open_zarr(killed).chunks["time"]
+    # More samples than fit in a chunk of the widest array.
+    stopped = tmp_path / "ring.zarr"
+    cd.simulate(
+        cd.scenes.spinning_ring(), until=0.08, every=1e-5, output=stopped, record="all", error=False
+    )
+    assert len(xr.open_zarr(stopped).chunks["time"]) == 2
+
+
+def test_a_result_is_running_or_was_killed(growing, killed):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert cd.open_result(growing.store).attrs["status"] == "running"
+    with pytest.warns(cd.ResultWarning, match=r"long\.zarr: killed; it holds \d+ samples"):
+        left = cd.open_result(killed)
+    assert left.attrs["status"] == "killed"
+    assert left.sizes["time"] == left.attrs["samples"] > 0
+    assert bool(left["span_tension"].notnull().any())
+
+
+def test_a_writer_keeps_others_out(growing):
+    who = f"process {growing.writer.pid} is writing"
+    with pytest.raises(cd.WriteError, match=who) as caught:
+        cd.simulate(cd.scenes.spinning_ring(), until=1e-3, output=growing.store, overwrite=True)
+    assert "another name" in caught.value.hint

@@ -1,5 +1,6 @@
 """Units of results as pint and UDUNITS read them, and quantities of pint as arguments."""
 
+import functools
 import re
 import warnings
 
@@ -37,13 +38,14 @@ def read(units: set[str]) -> None:
         assert by_cf.convert(1.0, base) == pytest.approx(by_pint.to_base_units().m), unit
 
 
-def run_of(name: str) -> xr.Dataset:
+@functools.cache
+def run_of(name: str, until: float = 2e-3) -> xr.Dataset:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         drive = getattr(cd.scenes, name)()
         events = ["teeth", "guides"]
         return cd.simulate(
-            drive, until=0.01, run_in=0, every=1e-4, record="all", events=events, error=False
+            drive, until=until, run_in=0, every=1e-4, record="all", events=events, error=False
         )
 
 
@@ -66,7 +68,7 @@ def test_units_of_a_run_and_its_page_are_units(preset: str) -> None:
 
 
 def test_units_of_analyses_are_units() -> None:
-    run = run_of("timing_drive")
+    run = run_of("timing_drive", until=0.01)
     of_drive = run.drive
     for found in [
         of_drive.spectrum("span_tension", kind="density"),
@@ -88,13 +90,15 @@ def test_units_of_analyses_are_units() -> None:
 
 def test_units_of_sweeps_are_units(tmp_path) -> None:
     paths = {"contact.teeth.law.stiffness": ["6e11 N/m^1.5"], "chain.drag": [0.0, 0.1]}
-    made = cd.sweep(cd.scenes.marine_engine(), paths, until=1e-3)
+    settings = {"until": 1e-4, "run_in": 0}
+    made = cd.sweep(cd.scenes.marine_engine(), paths, **settings)
     read(told(made))
     # The exponent n is another parameter.
     assert made["stiffness"].attrs["entry_units"] == "N/m^n"
     assert made["drag"].attrs["units"] == "N s/m^2"
     pytest.importorskip("zarr")
-    stored = cd.sweep(cd.scenes.marine_engine(), paths, until=1e-3, output=f"{tmp_path}/sweep.zarr")
+    output = f"{tmp_path}/sweep.zarr"
+    stored = cd.sweep(cd.scenes.marine_engine(), paths, **settings, output=output)
     assert told(stored) == told(made)
 
 
@@ -141,7 +145,7 @@ def test_quantities_of_pint_are_values_of_a_scene() -> None:
     sticky = cd.friction("coulomb", coefficient=0.1, slip_speed=2 * UREG.mm / UREG.s)
     assert sticky.parameters["slip_speed"] == 2e-3
     speeds = UREG.Quantity([100, 200], "rpm")
-    swept = cd.sweep(drive, {"sprockets.driver.motion.speed": speeds}, until=1e-3)
+    swept = cd.sweep(drive, {"sprockets.driver.motion.speed": speeds}, until=1e-4, run_in=0)
     assert swept["speed"].to_numpy() == pytest.approx([10.472, 20.944], rel=1e-4)
 
 
