@@ -41,7 +41,7 @@ fn laid(line: &[&str], table: &[Vec<&str>], names: usize) -> String {
     let cells = |column: usize| table.iter().filter_map(move |line| line.get(column));
     let figures = cells(last).filter(|it| is_figure(it)).count();
     // The heading is none of them.
-    let ends_in_words = last == 1 || 2 * figures < cells(last).count() - 1;
+    let ends_in_words = last == 1 || 2 * figures <= cells(last).count() - 1;
     let gap = if last == 1 { " " } else { "  " };
     let cell = |(column, cell): (usize, &&str)| {
         let widths = cells(column).map(|it| it.chars().count());
@@ -59,4 +59,26 @@ fn laid(line: &[&str], table: &[Vec<&str>], names: usize) -> String {
 /// Whether a cell is a number, or the dash of none.
 fn is_figure(cell: &str) -> bool {
     cell.starts_with(|it: char| it.is_ascii_digit() || "+-–×".contains(it))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::aligned;
+
+    /// Each table has its own widths; names reach as far as all of them are to begin.
+    #[test]
+    fn tables_are_aligned_each_by_itself() {
+        let text =
+            "a\tb\tfirst\n  one\t1.5\tleft, right\n  two\t–\t–\nnext\tb\tlast\n  x\t2\t10.25\nends";
+        let wanted = "a         b  first\n  one   1.5  left, right\n  two     –  –\nnext    b   last\n  x     2  10.25\nends";
+        assert_eq!(aligned(text, 6), wanted);
+    }
+
+    /// What is said of a name begins in one column, whatever it is; the end of the text stays as it was.
+    #[test]
+    fn what_is_said_of_a_name_stands_left() {
+        let text = "  mass\t12 kg\n  a longer name\tnone\n";
+        let wanted = "  mass          12 kg\n  a longer name none\n";
+        assert_eq!(aligned(text, 0), wanted);
+    }
 }

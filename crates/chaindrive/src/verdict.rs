@@ -22,7 +22,6 @@ use crate::summary::{Ledger, Steadiness, Summary};
 use crate::zarr::Story;
 use crate::{Channel, RanIn, Simulation};
 
-pub(crate) use duty::{ALIGNED, ALIGNED_FAST};
 pub use reason::{Reason, Rule};
 
 /// How far a result can be trusted.
@@ -100,6 +99,19 @@ const WIDE: f64 = 0.05;
 /// *Assumed*: links between seated rollers are pressed for a moment when one is struck, and a strand that is pressed for longer would fold.
 const PRESSED: f64 = Summary::PRESSED;
 const LONG_PRESSED: f64 = 0.01;
+/// Samples a tooth passing below which the mesh is seen at another frequency than its own: H. Nyquist, *Trans. AIEE* **47**, 1928,
+/// 617–644.
+const LEAST_SAMPLES: f64 = 2.0;
+/// Share of the energy that loads exchange, above which they drive in the net. *Assumed*: those that swing, as the torque of cams does,
+/// leave less in a run that is cut off at any moment.
+const DRIVES: f64 = 0.25;
+/// Share of the energy moved below which it does not matter who drives. *Assumed*.
+const MATTERS: f64 = 0.01;
+
+/// Distance of the planes of two sprockets over that of their shafts that makers allow, and in fast drives: SEDIS, *Transmission chains*,
+/// 0.2 % and 0.1 %. Which drive is fast they do not say.
+pub(crate) const ALIGNED: f64 = 2e-3;
+pub(crate) const ALIGNED_FAST: f64 = 1e-3;
 
 impl Verdict {
     /// The verdict on a run that ended: by its samples, how it was run in, the estimate of its error, and the choice of its

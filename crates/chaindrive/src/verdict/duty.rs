@@ -3,24 +3,10 @@
 use chaindrive_contact::dissipation::FASTEST_IMPACT;
 use chaindrive_mechanics::{Parts, Struck, Unrated};
 
-use super::Reason;
+use super::{ALIGNED, DRIVES, LEAST_SAMPLES, MATTERS, Reason};
 use crate::rating::{Load, Rating};
 use crate::summary::Ledger;
 use crate::{Simulation, Summary};
-
-/// Samples a tooth passing below which the mesh is seen at another frequency than its own: H. Nyquist, *Trans. AIEE* **47**, 1928,
-/// 617–644.
-pub(super) const LEAST_SAMPLES: f64 = 2.0;
-/// Share of the energy that loads exchange, above which they drive in the net. *Assumed*: those that swing, as the torque of cams does,
-/// leave less in a run that is cut off at any moment.
-pub(super) const DRIVES: f64 = 0.25;
-/// Share of the energy moved below which it does not matter who drives. *Assumed*.
-pub(super) const MATTERS: f64 = 0.01;
-
-/// Distance of the planes of two sprockets over that of their shafts that makers allow, and in fast drives: SEDIS, *Transmission chains*,
-/// 0.2 % and 0.1 %. Which drive is fast they do not say.
-pub(crate) const ALIGNED: f64 = 2e-3;
-pub(crate) const ALIGNED_FAST: f64 = 1e-3;
 
 /// Reasons against a run from the duty that it asks of the drive.
 pub(super) fn found(summary: &Summary, simulation: &Simulation) -> Vec<Reason> {

@@ -7,10 +7,10 @@ use std::fmt;
 use chaindrive_contact::dissipation::FASTEST_IMPACT;
 use chaindrive_mechanics::Fight;
 
-use super::duty::{ALIGNED, ALIGNED_FAST, DRIVES, LEAST_SAMPLES, MATTERS};
 use super::{
-    LEAST_SHIFT, LEAST_STEPS, LONG_PRESSED, MOST_EFFICIENCY, OPEN_LEDGER, OPEN_MOTION, PRESSED,
-    Trust, UNCERTAIN_LOSSES, UNHELD, Verdict, WIDE, WRONG_LOSSES,
+    ALIGNED, ALIGNED_FAST, DRIVES, LEAST_SAMPLES, LEAST_SHIFT, LEAST_STEPS, LONG_PRESSED, MATTERS,
+    MOST_EFFICIENCY, OPEN_LEDGER, OPEN_MOTION, PRESSED, Trust, UNCERTAIN_LOSSES, UNHELD, Verdict,
+    WIDE, WRONG_LOSSES,
 };
 use crate::MOST_CIRCUITS;
 use crate::figure::{Measure, duration, percent, with_digits};
