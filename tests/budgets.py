@@ -53,4 +53,5 @@ def main() -> None:
         sys.exit("above the budget by more than 15 %:\n" + "\n".join(over))
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -93,8 +93,11 @@ class Watch:
 def python(arguments: list[str]) -> list[Cost]:
     """Run the tests of Python one after the other."""
     watch = Watch()
-    with contextlib.redirect_stdout(io.StringIO()):
-        pytest.main(["--rootdir", str(ROOT), *arguments], plugins=[watch])
+    with contextlib.redirect_stdout(io.StringIO()) as told:
+        code = pytest.main(arguments, plugins=[watch])
+    # A test that fails has its cost too.
+    if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
+        sys.exit(told.getvalue())
     return watch.costs
 
 
