@@ -104,13 +104,13 @@ def python(arguments: list[str]) -> list[Cost]:
 def main() -> None:
     """Print both lists, and what is above the limit without a reason; paths choose of Python's."""
     paths = sys.argv[1:]
-    limit = LIMIT * pace.slowness()
     costs = {"Python": python(paths)} if paths else {"Rust": rust(), "Python": python([])}
     for language, found in costs.items():
         total = sum(it.seconds for it in found)
         print(f"{language}: {len(found)} tests, {total:.0f} CPU s")
         for seconds, name, reason in sorted(found, reverse=True)[:MOST]:
             print(f"{seconds:8.2f} s  {name}" + (f": {reason}" if reason else ""))
+    limit = LIMIT * pace.slowness()
     above = [it for found in costs.values() for it in found if it.seconds > limit and not it.reason]
     if above:
         names = "\n".join(f"{it.seconds:8.2f} s  {it.name}" for it in sorted(above, reverse=True))
