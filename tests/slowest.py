@@ -93,21 +93,24 @@ class Watch:
 def python(arguments: list[str]) -> list[Cost]:
     """Run the tests of Python one after the other."""
     watch = Watch()
-    with contextlib.redirect_stdout(io.StringIO()):
-        pytest.main(["--rootdir", str(ROOT), *arguments], plugins=[watch])
+    with contextlib.redirect_stdout(io.StringIO()) as told:
+        code = pytest.main(arguments, plugins=[watch])
+    # A test that fails has its cost too.
+    if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
+        sys.exit(told.getvalue())
     return watch.costs
 
 
 def main() -> None:
     """Print both lists, and what is above the limit without a reason; paths choose of Python's."""
     paths = sys.argv[1:]
-    limit = LIMIT * pace.slowness()
     costs = {"Python": python(paths)} if paths else {"Rust": rust(), "Python": python([])}
     for language, found in costs.items():
         total = sum(it.seconds for it in found)
         print(f"{language}: {len(found)} tests, {total:.0f} CPU s")
         for seconds, name, reason in sorted(found, reverse=True)[:MOST]:
             print(f"{seconds:8.2f} s  {name}" + (f": {reason}" if reason else ""))
+    limit = LIMIT * pace.slowness()
     above = [it for found in costs.values() for it in found if it.seconds > limit and not it.reason]
     if above:
         names = "\n".join(f"{it.seconds:8.2f} s  {it.name}" for it in sorted(above, reverse=True))

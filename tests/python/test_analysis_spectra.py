@@ -1,8 +1,5 @@
 """Spectra, orders, running modes, transmission error and spans against closed forms."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -106,7 +103,7 @@ def test_a_run_up_says_what_it_cannot_do() -> None:
         cd.run_up(cd.scenes.marine_two_sprockets(), "-10 rpm", "20 rpm", until=1.0)
 
 
-@pytest.mark.parametrize("speed", [0.0, 5.0, 10.0, 15.0])
+@pytest.mark.parametrize("speed", [0.0, 15.0])
 def test_running_modes_are_those_of_moving_strings(speed: float) -> None:
     """Theory: f = n (c² − v²) / (2 L c) between the tangent points, see R. Skutsch, 1897."""
     drive = cd.scenes.marine_two_sprockets()
@@ -272,11 +269,3 @@ def test_what_is_missing_is_named(two_sprockets: xr.Dataset) -> None:
         analysis.running_modes(cd.scenes.bicycle(), speeds=1.0)
     with pytest.raises(cd.ParameterError, match="does not turn at 90"):
         two_sprockets.drive.span_frequencies(speed=90.0)
-    script = (
-        "import sys; sys.modules['scipy'] = None; sys.modules['scipy.signal'] = None\n"
-        "import chaindrive as cd\n"
-        "run = cd.simulate(cd.scenes.spinning_ring(), until=0.02, record='link_tension')\n"
-        "run.drive.spectrum('link_tension', link=3)"
-    )
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
-    assert "take the package scipy: pip install 'chaindrive[analysis]'" in done.stderr

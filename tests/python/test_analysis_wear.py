@@ -175,7 +175,7 @@ def test_scenes_without_sprockets_are_told_so():
 
 
 def test_impacts_need_contacts():
-    run = cd.simulate(cd.scenes.industrial_16b(), until=1e-3, error=False)
+    run = cd.simulate(cd.scenes.industrial_16b(), until=1e-3, run_in=0, error=False)
     with pytest.raises(cd.ParameterError, match="events='teeth'"):
         run.drive.impacts()
 
@@ -258,7 +258,7 @@ def test_work_of_an_articulation(industrial):
 
 def test_a_joint_without_dimensions_says_what_to_give():
     run = cd.simulate(
-        cd.scenes.timing_drive(), until=2e-3, record=CHANNELS, every=5e-5, error=False
+        cd.scenes.timing_drive(), until=2e-3, run_in=0, record=CHANNELS, every=5e-5, error=False
     )
     with pytest.raises(cd.ParameterError, match="give bush_length="):
         run.drive.joint_work()

@@ -123,14 +123,16 @@ def turned_shaft(drive):
     raise AssertionError("every shaft has a motion")
 
 
-@pytest.mark.parametrize("fmi", [2, 3])
-@pytest.mark.parametrize("preset", [*PRESETS, "marine_two_sprockets"])
+@pytest.mark.parametrize(
+    ("preset", "fmi"),
+    [
+        *((preset, fmi) for preset in [*PRESETS, "marine_two_sprockets"] for fmi in (2, 3)),
+        ("marine_engine", 3),
+        ("two_stage_timing", 3),
+    ],
+)
 def test_an_importer_finds_nothing_wrong(written, preset, fmi):
     assert validate_fmu(str(written(getattr(cd.scenes, preset)(), fmi))) == []
-
-
-def test_an_importer_finds_nothing_wrong_with_two_chains(written):
-    assert validate_fmu(str(written(cd.scenes.two_stage_timing(), 3))) == []
 
 
 def test_the_export_says_the_verdict_of_its_run(tmp_path):

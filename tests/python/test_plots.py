@@ -161,7 +161,8 @@ def test_the_layout_of_a_run_is_that_of_its_drive() -> None:
 
 
 def test_a_run_of_a_few_samples_has_no_map() -> None:
-    run = cd.simulate(cd.scenes.marine_engine(), until=0.06, run_in=0, error=False)
+    settings = {"until": 0.06, "run_in": 0, "method": "verlet", "error": False}
+    run = cd.simulate(cd.scenes.marine_engine(), **settings)
     with pytest.raises(cd.ParameterError, match="simulate longer"):
         cd.plot.campbell(run)
     assert not plt.get_fignums()

@@ -12,12 +12,13 @@ import xarray as xr
 import chaindrive as cd
 
 CHANNELS = ["link_tension", "span_tension", "roller_x", "shaft_speed", "sprocket_speed"]
+SETTINGS = {"until": 5e-4, "every": 1e-4, "run_in": 0, "method": "verlet", "error": False}
 
 
 @pytest.fixture(scope="module")
 def run() -> xr.Dataset:
     drive = cd.scenes.two_stage_timing()
-    return cd.simulate(drive, until=5e-4, every=1e-4, method="verlet", record=CHANNELS, error=False)
+    return cd.simulate(drive, record=CHANNELS, **SETTINGS)
 
 
 def test_a_drive_tells_its_chains_and_shafts() -> None:
@@ -46,7 +47,7 @@ def test_a_run_is_selected_by_chain(run: xr.Dataset) -> None:
 
 def test_one_chain_needs_no_name() -> None:
     drive = cd.scenes.marine_two_sprockets()
-    run = cd.simulate(drive, until=1e-4, every=1e-4, method="verlet", record="all", error=False)
+    run = cd.simulate(drive, record="all", **SETTINGS)
     assert not [name for name in run.coords if str(name).endswith("_chain")]
     assert not [name for name in run if str(name).startswith(("shaft", "coupling"))]
 
@@ -55,15 +56,7 @@ def test_a_store_tells_the_chains_too(tmp_path: Path, run: xr.Dataset) -> None:
     pytest.importorskip("zarr")
     drive = cd.scenes.two_stage_timing()
     path = tmp_path / "run.zarr"
-    cd.simulate(
-        drive,
-        until=5e-4,
-        every=1e-4,
-        method="verlet",
-        record=CHANNELS,
-        error=False,
-        output=path,
-    )
+    cd.simulate(drive, record=CHANNELS, output=path, **SETTINGS)
     stored = cd.open_result(path)
     assert set(stored.coords) == set(run.coords)
     for name in run.coords:
@@ -99,14 +92,8 @@ def test_all_chains_are_drawn(run: xr.Dataset) -> None:
     (plates,) = [it for it in ax.collections if type(it).__name__ == "PolyCollection"]
     assert len(plates.get_paths()) == 76 + 84
     pyplot.close(ax.figure)
-    both = cd.simulate(
-        cd.scenes.two_stage_timing(),
-        until=2e-4,
-        every=1e-4,
-        method="verlet",
-        record=["roller_x", "roller_y", "sprocket_angle", "tensioner_position", "link_tension"],
-        error=False,
-    )
+    wanted = ["roller_x", "roller_y", "sprocket_angle", "tensioner_position", "link_tension"]
+    both = cd.simulate(cd.scenes.two_stage_timing(), record=wanted, **SETTINGS)
     ax = cd.plot.frame(both, 1e-4)
     (plates,) = [it for it in ax.collections if type(it).__name__ == "PolyCollection"]
     assert len(plates.get_array()) == len(plates.get_paths()) == 160

@@ -104,14 +104,6 @@ def test_units_of_tensioners_are_those_of_their_carriers():
         assert [run[name].attrs["units"] for name in names] == units
 
 
-def test_a_sweep_with_failed_variants_is_not_complete():
-    vary = {"chain.start.speed": [300.0, 1e300]}
-    swept = cd.sweep(cd.scenes.spinning_ring(), vary, until=1e-3, every=1e-3)
-    assert swept.attrs["status"] == "failed"
-    assert swept.attrs["complete"] == 0
-    assert swept.attrs["failure"] == "1 of 2 variants failed"
-
-
 # These come last: the writer ends with them.
 
 
