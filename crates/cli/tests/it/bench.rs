@@ -1,5 +1,4 @@
 //! `chaindrive bench`: what it prints and saves, what it refuses.
-#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::fs;
 

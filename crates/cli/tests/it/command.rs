@@ -1,5 +1,4 @@
 //! The verbs of the command, their exit codes, and what they leave on disk.
-#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::fs;
 

@@ -1,6 +1,5 @@
 //! A run that is stopped or killed leaves a result that can be read.
 #![cfg(unix)]
-#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

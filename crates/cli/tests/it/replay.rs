@@ -1,5 +1,4 @@
 //! `chaindrive replay`: pages of results, and what it refuses.
-#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::fs;
 

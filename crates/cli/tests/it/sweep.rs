@@ -1,5 +1,4 @@
 //! `chaindrive sweep`: what it writes, what it says, how it ends.
-#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::fs;
 use std::path::Path;
