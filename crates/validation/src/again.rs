@@ -3,20 +3,27 @@
 use std::env;
 use std::process::Command;
 
-/// Runs all other tests of this program again, with each value of a variable of the environment.
+/// Runs other tests of this program again, with each value of a variable of the environment: those whose names contain one of `only`, or all,
+/// if that is empty, and `but` not.
 ///
 /// # Panics
 /// If one of them fails, or none is run.
-pub fn run_again<'a>(but: &str, variable: &str, values: impl IntoIterator<Item = &'a str>) {
+pub fn run_again<'a>(
+    only: &[&str],
+    but: &str,
+    variable: &str,
+    values: impl IntoIterator<Item = &'a str>,
+) {
     for value in values {
-        run_once(but, variable, value);
+        run_once(only, but, variable, value);
     }
 }
 
-fn run_once(but: &str, variable: &str, value: &str) {
+fn run_once(only: &[&str], but: &str, variable: &str, value: &str) {
     let program = env::current_exe().expect("a test is a program");
     let again = Command::new(program)
         .env(variable, value)
+        .args(only)
         .args(["--skip", but])
         .output()
         .expect("what runs here can be run");

@@ -5,39 +5,28 @@ use chaindrive::Scene;
 use chaindrive_mechanics::Place;
 
 use crate::dynamics::run_open;
+use crate::two_sprockets::{TwoSprockets, steady};
 
 const FILM: &str = "film = { thickness = \"20 µm\", viscosity = \"0.05 Pa s\" }";
 
 /// A drive whose teeth, chain and guides have these keys.
 fn drive(teeth: &str, chain: &str, more: &str, step: f64) -> String {
-    format!(
-        r#"
-        gravity = [0, -9.81]
-        [chain]
-        type = "16B-1"
-        links = 86
-        {chain}
-        [contact.teeth]
-        {teeth}
-        {more}
-        [[sprockets]]
-        name = "driver"
-        teeth = 20
-        centre = [0, 0]
-        motion = {{ kind = "constant", speed = "20 rad/s" }}
-        [[sprockets]]
-        name = "driven"
-        teeth = 30
-        centre = ["-0.766 m", 0]
-        inertia = "0.02 kg m^2"
-        load = [{{ kind = "constant", torque = "-100 N m" }}]
-        [run]
-        until = "60 ms"
-        every = "0.2 ms"
-        run_in = "40 ms"
-        step = {step:e}
-        "#
-    )
+    TwoSprockets {
+        before: "gravity = [0, -9.81]",
+        links: 46.0,
+        chain: &format!("type = \"16B-1\"\n{chain}"),
+        teeth: [20.0, 30.0],
+        centre: [-0.261, 0.0],
+        driver: &steady(20.0),
+        inertia: 0.02,
+        driven: "load = [{ kind = \"constant\", torque = \"-100 N m\" }]",
+        after: &format!("[contact.teeth]\n{teeth}\n{more}"),
+        until: 20e-3,
+        every: 0.2e-3,
+        run: &format!("run_in = \"10 ms\"\nstep = {step:e}"),
+        ..TwoSprockets::NOTHING
+    }
+    .text()
 }
 
 const PARTICLES: &str = "stiffness = \"20 MN/m\"";
@@ -45,7 +34,7 @@ const PLAY: &str = "model = \"clearance-joints\"";
 const GUIDE: &str = r#"
         [[guides]]
         name = "rail"
-        face = { kind = "on-span", between = ["driven", "driver"], material = "left", from = "20 %", to = "80 %", bow = "3 mm", end_radius = "0.3 m", end_angle = "10 deg" }
+        face = { kind = "on-span", between = ["driven", "driver"], material = "left", from = "35 %", to = "65 %", bow = "1 mm", end_radius = "0.05 m", end_angle = "10 deg" }
 "#;
 
 /// Energy that is unaccounted for, over what moves; what is lost in each place \[W\]; films that were seen \[m\].

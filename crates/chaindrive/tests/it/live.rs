@@ -124,11 +124,11 @@ fn a_run_in_a_hundred_pieces_is_the_run_in_one() {
         for stepping in METHODS {
             let mut whole = moving(&assembled, stepping);
             let mut pieces = whole.clone();
-            let end = bits(whole.advance_to(4e-4).unwrap());
+            let end = bits(whole.advance_to(1e-4).unwrap());
             for k in 0..100 {
-                pieces.advance_to(4e-6 * f64::from(k)).unwrap();
+                pieces.advance_to(1e-6 * f64::from(k)).unwrap();
             }
-            assert_eq!(bits(pieces.advance_to(4e-4).unwrap()), end, "{stepping:?}");
+            assert_eq!(bits(pieces.advance_to(1e-4).unwrap()), end, "{stepping:?}");
             assert_eq!(pieces.statistics(), whole.statistics(), "{stepping:?}");
         }
     }
@@ -190,7 +190,7 @@ fn a_snapshot_brings_back_every_bit() {
     }
 }
 
-/// Rigid links, pins that rub, tensioners, guides, and a chain of each kind: in a hundred pieces, each on a new
+/// Rigid links, pins that rub, tensioners, guides, and a chain of each kind: in twenty pieces, each on a new
 /// simulation that knows nothing but the bytes of the last.
 #[test]
 fn a_run_by_snapshots_is_the_run_in_one() {
@@ -213,16 +213,16 @@ fn a_run_by_snapshots_is_the_run_in_one() {
             }
             let fresh = moving(&assembled, stepping);
             let mut whole = fresh.clone();
-            let end = bits(whole.advance_to(2e-4).unwrap());
+            let end = bits(whole.advance_to(1e-4).unwrap());
             let mut bytes = fresh.snapshot().to_bytes();
-            for k in 1..=50 {
+            for k in 1..=20 {
                 let mut piece = fresh.clone();
                 piece
                     .restore(&Snapshot::from_bytes(&bytes).unwrap())
                     .unwrap();
-                piece.advance_to(2e-4 * f64::from(k) / 50.0).unwrap();
+                piece.advance_to(1e-4 * f64::from(k) / 20.0).unwrap();
                 bytes = piece.snapshot().to_bytes();
-                if k == 50 {
+                if k == 20 {
                     assert_eq!(
                         bits(piece.observation()),
                         end,

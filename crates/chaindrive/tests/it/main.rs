@@ -45,6 +45,7 @@ mod strands;
 mod sweep;
 mod tolerances;
 mod tooth_gaps;
+mod two_sprockets;
 mod validation_contact;
 mod validation_dynamics_free_chain;
 mod validation_dynamics_impacts;

@@ -1,6 +1,8 @@
 //! Samples of contact forces are the forces that moved the rollers, and no others.
 
-use chaindrive::{ContactEvent, ContactPair, EventKinds, Method, Run, Scene, Simulation, Stepping};
+use chaindrive::{
+    Assembled, ContactEvent, ContactPair, EventKinds, Method, Run, Scene, Simulation, Stepping,
+};
 
 /// Samples of forces of rollers on teeth over time, and all contacts with teeth.
 struct Seen {
@@ -8,7 +10,7 @@ struct Seen {
     events: Vec<ContactEvent>,
 }
 
-fn seen(drive: &chaindrive::Drive, run: &Run) -> Seen {
+fn seen(start: &Assembled, run: &Run) -> Seen {
     let run = Run {
         events: EventKinds {
             teeth: true,
@@ -16,7 +18,7 @@ fn seen(drive: &chaindrive::Drive, run: &Run) -> Seen {
         },
         ..run.clone()
     };
-    let mut simulation = Simulation::start(drive, &run).unwrap_or_else(|error| panic!("{error}"));
+    let mut simulation = started(start, &run);
     let (mut samples, mut events) = (Vec::new(), Vec::new());
     while let Some(sample) = simulation.next_sample().expect("the motion stays finite") {
         samples.push((sample.time, sample.contact_force.clone()));
@@ -42,11 +44,20 @@ impl Seen {
     }
 }
 
+fn assembled(preset: &str) -> Assembled {
+    let drive = Scene::preset(preset).and_then(|scene| scene.drive());
+    let drive = drive.unwrap_or_else(|error| panic!("{error}"));
+    drive.assemble().unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn started(start: &Assembled, run: &Run) -> Simulation {
+    let simulation = Simulation::from_assembled(start.clone(), run);
+    simulation.unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// The step that a run takes.
-fn step_of(drive: &chaindrive::Drive) -> f64 {
-    let simulation = Simulation::start(drive, &Run::default());
-    let simulation = simulation.unwrap_or_else(|error| panic!("{error}"));
-    simulation.method().step()
+fn step_of(start: &Assembled) -> f64 {
+    started(start, &Run::default()).method().step()
 }
 
 /// Defect: samples asked the law again at an interpolated velocity, and 11 % of the contacts of the marine drive had samples
@@ -62,9 +73,8 @@ fn no_sample_is_greater_than_the_peak_of_its_contact() {
         "bicycle",
         "motorcycle",
     ] {
-        let drive = Scene::preset(name).and_then(|scene| scene.drive());
-        let drive = drive.unwrap_or_else(|error| panic!("{error}"));
-        let step = step_of(&drive);
+        let start = assembled(name);
+        let step = step_of(&start);
         // Between the steps, several samples within one, and steps as long as they may be.
         for (every, times) in [(3.3, 1.0), (0.29, 1.0), (3.3, 1.8)] {
             let run = Run {
@@ -73,7 +83,7 @@ fn no_sample_is_greater_than_the_peak_of_its_contact() {
                 step: Some(times * step),
                 ..Run::default()
             };
-            let peaks = seen(&drive, &run).peaks();
+            let peaks = seen(&start, &run).peaks();
             assert!(peaks.len() > 20, "{name}: {} contacts", peaks.len());
             for (greatest, peak) in peaks {
                 assert!(
@@ -95,10 +105,9 @@ fn a_sample_at_the_end_of_a_step_is_the_force_that_it_applied() {
         ("bicycle", "implicit-damping"),
         ("bicycle", "generalized-alpha"),
     ] {
-        let drive = Scene::preset(name).and_then(|scene| scene.drive());
-        let drive = drive.unwrap_or_else(|error| panic!("{error}"));
+        let start = assembled(name);
         // A power of two: the times of samples and steps are the same to the last bit.
-        let step = (0.5 * step_of(&drive)).log2().floor().exp2();
+        let step = (0.5 * step_of(&start)).log2().floor().exp2();
         let run = Run {
             until: 8192.0 * step,
             every: step,
@@ -106,7 +115,7 @@ fn a_sample_at_the_end_of_a_step_is_the_force_that_it_applied() {
             stepping: Stepping::from_name(method).expect("a method"),
             ..Run::default()
         };
-        let seen = seen(&drive, &run);
+        let seen = seen(&start, &run);
         // Neither those that lay there from the start nor those that last.
         let whole = |it: &&ContactEvent| it.start > 0.0 && it.end < run.until;
         let judged = seen.events.iter().filter(whole).count();
@@ -175,14 +184,13 @@ fn contacts_add_up_to_the_force_on_their_sprocket() {
 /// A run in pieces, with a snapshot between two steps that a sample lies in, has the forces of the run in one.
 #[test]
 fn a_snapshot_remembers_the_forces() {
-    let drive = Scene::preset("timing_drive").and_then(|scene| scene.drive());
-    let drive = drive.unwrap_or_else(|error| panic!("{error}"));
+    let assembled = assembled("timing_drive");
     let run = Run {
         until: 1e-3,
         every: 1e-4,
         ..Run::default()
     };
-    let start = || Simulation::start(&drive, &run).unwrap_or_else(|error| panic!("{error}"));
+    let start = || started(&assembled, &run);
     let mut whole = start();
     let step = whole.method().step();
     for time in [0.3, 0.55, 1.1, 2.4, 2.5, 7.9].map(|steps| 37.0 * step + steps * step) {

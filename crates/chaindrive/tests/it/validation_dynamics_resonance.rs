@@ -5,6 +5,7 @@ use crate::dynamics;
 
 use std::f64::consts::{PI, TAU};
 
+use crate::two_sprockets::{LOWER_SPAN_HANGS, TwoSprockets, steady};
 use chaindrive::Observation;
 use chaindrive_geometry::TwoWheels;
 use chaindrive_validation::Case;
@@ -42,45 +43,28 @@ fn sway(row: &[f64], rpm: f64) -> f64 {
     let torque = tension * radius;
     let until = 24.0 / (teeth * rpm / 60.0);
     let (contact, mass) = (2e5 * tension, line_mass * pitch);
-    let text = format!(
-        r#"
-        [chain]
-        pitch = {pitch}
-        links = {links}
-        mass = {mass}
-        stiffness = {stiffness}
-        damping_ratio = 0.05
-        roller_diameter = {roller}
-        [contact.teeth]
-        law = {{ kind = "linear", stiffness = {contact} }}
-        damping = {damper}
-        [[sprockets]]
-        name = "driver"
-        teeth = {teeth}
-        centre = [0, 0]
-        motion = {{ kind = "constant", speed = {speed} }}
-        [[sprockets]]
-        name = "driven"
-        teeth = {teeth}
-        centre = [{distance}, 0]
-        inertia = {inertia}
-        load = [{{ kind = "constant", torque = {load} }}]
-        [route]
-        stops = ["driven", "driver"]
-        [run]
-        until = {until}
-        every = {every}
-        "#,
-        links = (teeth + 2.0 * span).round(),
+    let text = TwoSprockets {
+        pitch,
+        links: (teeth + 2.0 * span).round(),
+        mass,
         // A soft chain, longer by 1 % under its load, and a light wheel keep the tension, and with it the frequency, where
         // they are.
-        stiffness = tension / (0.01 * pitch),
-        damper = halving(contact, mass),
-        inertia = 4.0 * mass * radius * radius,
-        roller = 0.67 * pitch,
-        load = -torque,
-        every = until / 2400.0,
-    );
+        stiffness: tension / (0.01 * pitch),
+        damping_ratio: 0.05,
+        roller: 0.67 * pitch,
+        contact,
+        damper: halving(contact, mass),
+        teeth: [teeth; 2],
+        centre: [distance, 0.0],
+        driver: &steady(speed),
+        inertia: 4.0 * mass * radius * radius,
+        driven: &format!("load = [{{ kind = \"constant\", torque = {} }}]", -torque),
+        after: LOWER_SPAN_HANGS,
+        until,
+        every: until / 2400.0,
+        ..TwoSprockets::NOTHING
+    }
+    .text();
     let mut heights = Vec::new();
     run(&text, |sample| {
         heights.push(2.0 / span * of_mode(sample, mode, distance, radius));
@@ -160,47 +144,31 @@ fn subharmonic(row: &[f64], rpm: f64) -> [f64; 2] {
     let inertia = stiffness / span * (large_radius / swing).powi(2);
     let viscous = 0.1 * swing * inertia;
     let (contact, mass) = (5.0 * stiffness, line_mass * pitch);
-    let text = format!(
-        r#"
-        settle = false
-        [chain]
-        pitch = {pitch}
-        links = {links}
-        mass = {mass}
-        stiffness = {stiffness}
-        damping_ratio = 0.05
-        roller_diameter = {roller}
-        [contact.teeth]
-        law = {{ kind = "linear", stiffness = {contact} }}
-        damping = {damper}
-        [[sprockets]]
-        name = "driver"
-        teeth = {teeth}
-        centre = [0, 0]
-        motion = {{ kind = "constant", speed = {speed} }}
-        [[sprockets]]
-        name = "driven"
-        teeth = {large}
-        centre = [{length}, {below}]
-        inertia = {inertia}
-        load = [
-            {{ kind = "constant", torque = {load} }},
-            {{ kind = "resistance", linear = {viscous} }},
-        ]
-        [route]
-        stops = ["driven", "driver"]
-        [run]
-        until = {until}
-        every = {every}
-        "#,
-        damper = halving(contact, mass),
-        roller = 0.67 * pitch,
+    let load = viscous * speed * teeth / f64::from(large) - tension * large_radius;
+    let text = TwoSprockets {
+        before: "settle = false",
+        pitch,
+        links,
+        mass,
+        stiffness,
+        damping_ratio: 0.05,
+        roller: 0.67 * pitch,
+        contact,
+        damper: halving(contact, mass),
+        teeth: [teeth, large.into()],
         // The tight span is level.
-        below = radius - large_radius,
-        load = viscous * speed * teeth / f64::from(large) - tension * large_radius,
-        until = 600.0 * period,
-        every = period / SAMPLES as f64,
-    );
+        centre: [length, radius - large_radius],
+        driver: &steady(speed),
+        inertia,
+        driven: &format!(
+            "load = [{{ kind = \"constant\", torque = {load} }}, {{ kind = \"resistance\", linear = {viscous} }}]"
+        ),
+        after: LOWER_SPAN_HANGS,
+        until: 600.0 * period,
+        every: period / SAMPLES as f64,
+        ..TwoSprockets::NOTHING
+    }
+    .text();
     let mut heights = Vec::new();
     run(&text, |sample| {
         heights.push(2.0 / span * of_mode(sample, mode, length, radius));
@@ -293,57 +261,43 @@ impl Spring<'_> {
         let distance = input("C") + self.apart;
         // A link more than the taut loop takes, so that nothing but its weight pulls the lower span.
         let links = (teeth + 2.0 * input("C") / pitch).round() + 1.0;
-        format!(
-            r#"
-            settle = false
-            {rod}
-            [chain]
-            pitch = {pitch}
-            links = {links}
-            mass = 3e-5
-            stiffness = {stiffness}
-            damping_ratio = 0.05
-            drag = 0.25 # the lower span falls to rest; without it it whips, and lifts links off their teeth
-            roller_diameter = {roller}
-            [contact.teeth]
-            law = {{ kind = "linear", stiffness = 2e8 }}
-            damping = 20
-            [[sprockets]]
-            name = "driver"
-            teeth = {teeth}
-            tooth = {tooth}
-            centre = [0, 0]
-            motion = {{ kind = "ramp", from = 0, to = {speed}, start = {ramp}, duration = {start} }}
-            [[sprockets]]
-            name = "driven"
-            teeth = {teeth}
-            tooth = {tooth}
-            centre = [{distance}, 0]
-            inertia = {inertia}
-            load = [
-                {{ kind = "ramp", torque = {load}, duration = {ramp} }},
-                {{ kind = "resistance", linear = {viscous} }},
-            ]
-            [route]
-            stops = ["driven", "driver", "rod"]
-            phase = {phase}
-            [run]
-            until = {until}
-            every = {every}
-            # At the default step link plates under the rod gain energy, as in V05.
-            step = {step}
-            "#,
-            step = 0.05 * (3e-5 / self.stiffness).sqrt(),
-            rod = spreading_rod(1.0, distance, [radius; 2], pitch),
-            stiffness = self.stiffness,
-            roller = 0.6 * pitch,
-            tooth = holding_gap(teeth, pitch, 10.0, 0.15).replace('\n', " "),
-            speed = self.speed,
-            inertia = input("J2"),
-            load = self.viscous * self.speed - self.tension * radius,
-            viscous = self.viscous,
-            phase = self.phase,
-        )
+        let Self {
+            stiffness,
+            speed,
+            tension,
+            viscous,
+            phase,
+            ..
+        } = *self;
+        let load = viscous * speed - tension * radius;
+        TwoSprockets {
+            before: &format!("settle = false\n{}", spreading_rod(1.0, distance, [radius; 2], pitch)),
+            pitch,
+            links,
+            mass: 3e-5,
+            stiffness,
+            damping_ratio: 0.05,
+            roller: 0.6 * pitch,
+            // The lower span falls to rest; without it it whips, and lifts links off their teeth.
+            chain: "drag = 0.25",
+            contact: 2e8,
+            damper: 20.0,
+            teeth: [teeth; 2],
+            tooth: &holding_gap(teeth, pitch, 10.0, 0.15).replace('\n', " "),
+            centre: [distance, 0.0],
+            driver: &format!("motion = {{ kind = \"ramp\", from = 0, to = {speed}, start = {ramp}, duration = {start} }}"),
+            inertia: input("J2"),
+            driven: &format!(
+                "load = [{{ kind = \"ramp\", torque = {load}, duration = {ramp} }}, {{ kind = \"resistance\", linear = {viscous} }}]"
+            ),
+            after: &format!("[route]\nstops = [\"driven\", \"driver\", \"rod\"]\nphase = {phase}"),
+            until,
+            every,
+            // At the default step link plates under the rod gain energy, as in V05.
+            run: &format!("step = {}", 0.05 * (3e-5 / stiffness).sqrt()),
+            ..TwoSprockets::NOTHING
+        }
+        .text()
     }
 }
 

@@ -4,6 +4,7 @@ use crate::dynamics;
 
 use std::f64::consts::TAU;
 
+use crate::two_sprockets::{TwoSprockets, steady};
 use chaindrive_validation::Case;
 use chaindrive_validation::Tolerance::Absolute;
 use dynamics::{mean, range, run};
@@ -22,54 +23,35 @@ const SAMPLES: usize = 20;
 /// do not have.
 #[test]
 fn k16_k19_tight_loops_carry_what_their_length_asks_for() {
-    for (id, links) in [("K16", 58), ("K19", 57)] {
+    for (id, links) in [("K16", 58.0), ("K19", 57.0)] {
         let case = Case::read(id);
         let input = |name: &str| case.number(&format!("inputs.{name}"));
         let (pitch, teeth) = (input("pitch"), input("z1"));
-        let (stiffness, speed) = (1e7, 2.0);
+        let (stiffness, speed) = (1e7, 4.0);
         let tooth = TAU / teeth / speed;
-        let wheel = format!(
-            "teeth = {teeth}\ntooth = {{ kind = 'circular', seat_radius = {} }}",
-            0.33 * pitch
-        );
-        let text = format!(
-            r#"
-            settle = false
-            gravity = [0, 0]
-            [chain]
-            pitch = {pitch}
-            links = {links}
-            mass = 2e-4
-            stiffness = {stiffness}
-            damping_ratio = 0.2
-            roller_diameter = {roller}
-            [contact.teeth]
-            law = {{ kind = "linear", stiffness = 1e9 }}
-            damping = 100
-            [[sprockets]]
-            name = "driver"
-            {wheel}
-            centre = [0, 0]
-            motion = {{ kind = "constant", speed = {speed} }}
-            [[sprockets]]
-            name = "driven"
-            {wheel}
-            centre = [{distance}, 0]
-            inertia = 2e-4
-            load = [{{ kind = "resistance", linear = 1e-2 }}]
-            [route]
-            pretension = "200 N"
-            [run]
-            run_in = 0
-            until = {until}
-            every = {every}
-            method = "verlet"
-            "#,
-            roller = 0.6 * pitch,
-            distance = input("C"),
-            until = 2.0 * tooth,
-            every = tooth / (PARTS * SAMPLES) as f64,
-        );
+        let text = TwoSprockets {
+            before: "settle = false\ngravity = [0, 0]",
+            pitch,
+            links,
+            mass: 2e-4,
+            stiffness,
+            damping_ratio: 0.2,
+            roller: 0.6 * pitch,
+            contact: 2e8,
+            damper: 45.0,
+            teeth: [teeth; 2],
+            tooth: &format!("{{ kind = 'circular', seat_radius = {} }}", 0.33 * pitch),
+            centre: [input("C"), 0.0],
+            driver: &steady(speed),
+            inertia: 2e-4,
+            driven: "load = [{ kind = \"resistance\", linear = 1e-2 }]",
+            after: "[route]\npretension = \"200 N\"",
+            until: 2.0 * tooth,
+            every: tooth / (PARTS * SAMPLES) as f64,
+            run: "run_in = 0\nmethod = \"verlet\"",
+            ..TwoSprockets::NOTHING
+        }
+        .text();
         let mut tensions = Vec::new();
         run(&text, |sample| {
             if sample.time > tooth {
@@ -81,7 +63,7 @@ fn k16_k19_tight_loops_carry_what_their_length_asks_for() {
         assert_eq!(parts.len(), PARTS);
         let table = case.table("expected.table_f_L");
         let lengths: Vec<f64> = table.iter().map(|row| row[1]).collect();
-        let of_length = stiffness / f64::from(links) * pitch;
+        let of_length = stiffness / links * pitch;
         // A tenth of the ripple of K16, in the loop that has none as well.
         let tolerance = Absolute(0.1 * of_length * 8.57e-3);
         let name = "range of the tension, as a run";

@@ -339,7 +339,8 @@ fn results_carry_the_verdict() {
         .with("until", Given::Number(1e-4))
         .with("every", Given::Number(1e-5))
         .with("method", Given::Text("implicit-damping".to_owned()))
-        .with("step", Given::Text("3 µs".to_owned()));
+        .with("step", Given::Text("3 µs".to_owned()))
+        .with("run_in", Given::Number(0.0));
     // Bare seats strike harder than steps of 3 µs account for.
     let bare = preset("motorcycle", &[("contact.teeth.series", "0")]);
     let request = Request::new(&bare, &settings).unwrap();

@@ -1,48 +1,15 @@
 //! `chaindrive bench`: what it prints and saves, what it refuses.
-#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::fs;
-use std::path::Path;
-use std::process::Command;
 
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir().unwrap()
-}
-
-/// Runs the command and returns exit code, stdout and stderr.
-fn run(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
-    let output = command
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (
-        output.status.code().unwrap(),
-        text(output.stdout),
-        text(output.stderr),
-    )
-}
+use crate::command_line::{folder, run, words};
 
 #[test]
 fn the_bench_prints_a_table_and_saves_it() {
     let folder = folder();
     let at = folder.path();
-    let short = [
-        "bench",
-        "spinning_ring",
-        "--until",
-        "5 ms",
-        "--repeats",
-        "1",
-    ];
-    let methods = [
-        "--methods",
-        "verlet,rk4,generalized-alpha",
-        "--steps",
-        "4e-5,2e-5",
-    ];
+    let short = words("bench spinning_ring --until '5 ms' --repeats 1");
+    let methods = words("--methods verlet,rk4,generalized-alpha --steps 4e-5,2e-5");
     let (code, out, err) = run(at, &[&short[..], &methods].concat());
     assert_eq!(code, 0, "{err}");
     assert!(
@@ -75,74 +42,46 @@ fn the_bench_refuses_what_it_cannot_run_or_write() {
     let folder = folder();
     let at = folder.path();
     fs::write(at.join("work-precision.csv"), "mine\n").unwrap();
-    let cases: [(&[&str], i32, &str); 10] = [
+    let cases = [
         (
-            &["--methods", "verlet", "--steps", "0"],
+            "--methods verlet --steps 0",
             2,
             "--steps: 0, must be positive",
         ),
         (
-            &["--methods", "verlet", "--steps", "1 us,2 kg"],
+            "--methods verlet --steps '1 us,2 kg'",
             2,
             "--steps: `2 kg` is a mass",
         ),
         (
-            &["--methods", "verlet", "--steps", "1e-300", "-o", "x"],
+            "--methods verlet --steps 1e-300 -o x",
             2,
             "step = 1e-300, must be at least",
         ),
+        ("--methods rk4 --onset-depth x", 2, "--onset-depth: `x`"),
         (
-            &["--methods", "rk4", "--onset-depth", "x"],
-            2,
-            "--onset-depth: `x`",
-        ),
-        (
-            &["--methods", "verlet", "--tolerances", "1e-6"],
+            "--methods verlet --tolerances 1e-6",
             2,
             "--tolerances is for dormand-prince",
         ),
         (
-            &["--methods", "dormand-prince", "--steps", "1e-6"],
+            "--methods dormand-prince --steps 1e-6",
             2,
             "--steps is for a method",
         ),
-        (
-            &["--methods", "dormand-prince", "--tolerances", "2"],
-            2,
-            "at most 1",
-        ),
-        (
-            &["--repeats", "0", "-o", "x"],
-            2,
-            "must be a whole number, 1 or more",
-        ),
-        (&["-o", "nowhere/bench"], 3, "nowhere/bench.csv"),
-        (&[], 3, "--overwrite"),
+        ("--methods dormand-prince --tolerances 2", 2, "at most 1"),
+        ("--repeats 0 -o x", 2, "must be a whole number, 1 or more"),
+        ("-o nowhere/bench", 3, "nowhere/bench.csv"),
+        ("", 3, "--overwrite"),
     ];
-    for (arguments, expected, words) in cases {
-        let given = [&["bench", "spinning_ring", "--until", "1 ms"], arguments].concat();
-        let (code, out, err) = run(at, &given);
-        assert_eq!((code, out.as_str()), (expected, ""), "{arguments:?}: {err}");
-        assert!(err.contains(words), "{arguments:?}: {err}");
+    for (arguments, expected, told) in cases {
+        let line = format!("bench spinning_ring --until 1ms {arguments}");
+        let (code, out, err) = run(at, &words(&line));
+        assert_eq!((code, out.as_str()), (expected, ""), "{line}: {err}");
+        assert!(err.contains(told), "{line}: {err}");
     }
-    let given = [
-        "bench",
-        "spinning_ring",
-        "--until",
-        "1 ms",
-        "-o",
-        "other",
-        "--repeats",
-        "1",
-    ];
-    let units = [
-        "--methods",
-        "verlet",
-        "--steps",
-        "20 us",
-        "--onset-depth",
-        "1 um",
-    ];
+    let given = words("bench spinning_ring --until '1 ms' -o other --repeats 1");
+    let units = words("--methods verlet --steps '20 us' --onset-depth '1 um'");
     let (code, out, err) = run(at, &[&given[..], &units].concat());
     assert_eq!(code, 0, "{err}");
     assert!(

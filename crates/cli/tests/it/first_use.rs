@@ -2,21 +2,14 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::fs;
-use std::process::Command;
+
+use crate::command_line::{folder, words};
 
 /// Runs the command with a scene beside it, and returns exit code, stdout and stderr.
 fn run(scene: &str, arguments: &[&str]) -> (i32, String, String) {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     fs::write(folder.path().join("scene.toml"), scene).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
-    let output = command.current_dir(folder.path()).args(arguments).output();
-    let output = output.unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (
-        output.status.code().unwrap(),
-        text(output.stdout),
-        text(output.stderr),
-    )
+    crate::command_line::run(folder.path(), arguments)
 }
 
 /// Message of a command that refuses a mistake.
@@ -149,12 +142,7 @@ fn numbers_in_texts_need_their_unit() {
     ];
     let (code, _, err) = run(TWO_SPROCKETS, &with_unit);
     assert_eq!((code, err.as_str()), (0, ""));
-    let teeth = [
-        "describe",
-        "scene.toml",
-        "--set",
-        "sprockets.driver.teeth=20",
-    ];
+    let teeth = words("describe scene.toml --set sprockets.driver.teeth=20");
     let (_, _, err) = run(TWO_SPROCKETS, &teeth);
     assert_eq!(err, "");
 }
@@ -191,12 +179,7 @@ fn lines_are_those_of_the_file() {
     let lines = TWO_SPROCKETS.lines().count();
     // Both are found when the drive is made, after the text was changed and has become longer.
     let wrong = TWO_SPROCKETS.replace("name = \"driven\", dir", "name = \"drivn\", dir");
-    let arguments = [
-        "describe",
-        "scene.toml",
-        "--set",
-        "sprockets.driver.mass=1 kg",
-    ];
+    let arguments = words("describe scene.toml --set 'sprockets.driver.mass=1 kg'");
     let more = ["--until", "1 s", "--every", "1 ms"];
     let (code, _, err) = run(&wrong, &[&arguments[..], &more].concat());
     assert_eq!(code, 2, "{err}");
@@ -204,12 +187,7 @@ fn lines_are_those_of_the_file() {
         err.starts_with(&format!("scene.toml:{lines}:38: route.adjust.name")),
         "{err}"
     );
-    let many = [
-        "describe",
-        "scene.toml",
-        "--set",
-        "route.start=\"sideways\"",
-    ];
+    let many = words("describe scene.toml --set route.start=\"sideways\"");
     let err = refused(&many);
     assert!(err.starts_with("--set route.start: route.start: "), "{err}");
 }
@@ -300,15 +278,7 @@ fn the_rating_of_a_chain_is_told() {
         )),
         "{row}"
     );
-    let arguments = [
-        "run",
-        "scene.toml",
-        "--until",
-        "20 ms",
-        "--no-error",
-        "--step",
-        "5 us",
-    ];
+    let arguments = words("run scene.toml --until 20ms --run-in 0 --no-error --step 5us");
     let (code, out, err) = run(TWO_SPROCKETS, &arguments);
     assert_eq!(code, 0, "{err}");
     assert!(
@@ -325,15 +295,7 @@ fn the_rating_of_a_chain_is_told() {
 fn a_drive_that_serves_nobody_has_no_efficiency() {
     let idle = TWO_SPROCKETS.replace("load = [{ kind = \"constant\", torque = \"-90 N m\" }]", "");
     let ramp = r#"sprockets.driver.motion={ kind = "ramp", from = "0 rpm", to = "300 rpm", duration = "10 ms" }"#;
-    let arguments = [
-        "run",
-        "scene.toml",
-        "--until",
-        "20 ms",
-        "--no-error",
-        "--step",
-        "5 us",
-    ];
+    let arguments = words("run scene.toml --until 20ms --run-in 0 --no-error --step 5us");
     let (code, out, err) = run(&idle, &[&arguments[..], &["--set", ramp]].concat());
     assert_eq!(code, 0, "{err}");
     let row = out

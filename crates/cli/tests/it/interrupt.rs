@@ -1,64 +1,23 @@
 //! A run that is stopped or killed leaves a result that can be read.
 #![cfg(unix)]
-#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
-use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::process::Child;
+
+use crate::command_line::{attributes, samples, signal, wait_for, words};
 
 /// A run that would take hours, into `out` of a folder.
 fn start(folder: &Path, out: &str) -> (Child, PathBuf) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
-    command
-        .current_dir(folder)
-        .args([
-            "run",
-            "spinning_ring",
-            "--until",
-            "1e4",
-            "--every",
-            "1 ms",
-            "-o",
-            out,
-        ])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
-    (command.spawn().unwrap(), folder.join(out))
-}
-
-fn signal(child: &Child, name: &str) {
-    let sent = Command::new("kill")
-        .args([name, &child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(sent.success());
-}
-
-fn attributes(store: &Path) -> Option<serde_json::Value> {
-    let text = fs::read(store.join("zarr.json")).ok()?;
-    // Whenever one looks, the document is whole.
-    let group: serde_json::Value = serde_json::from_slice(&text).unwrap();
-    Some(group["attributes"].clone())
+    let long = words("run spinning_ring --until 1e4 --every '1 ms' -o");
+    let child = crate::command_line::start(folder, &[&long[..], &[out]].concat());
+    (child, folder.join(out))
 }
 
 /// Waits until samples are committed, and returns how many.
 fn wait_for_samples(store: &Path) -> u64 {
-    let begin = Instant::now();
-    loop {
-        let samples = attributes(store)
-            .and_then(|a| a["samples"].as_u64())
-            .unwrap_or(0);
-        if samples > 0 {
-            return samples;
-        }
-        assert!(
-            begin.elapsed() < Duration::from_mins(1),
-            "no sample was committed"
-        );
-        sleep(Duration::from_millis(20));
-    }
+    wait_for("no sample was committed", || samples(store) > 0);
+    samples(store)
 }
 
 #[test]
@@ -75,24 +34,19 @@ fn interrupted_it_ends_the_result_and_the_summary() {
             .contains("The hardest pulled link")
     );
     assert_eq!(String::from_utf8(output.stderr).unwrap(), "interrupted\n");
-    let attributes = attributes(&store).unwrap();
-    assert_eq!(attributes["status"], "interrupted");
-    assert_eq!(attributes["complete"], 0);
-    assert!(attributes["samples"].as_u64().unwrap() >= seen);
+    let about = attributes(&store);
+    assert_eq!(about["status"], "interrupted");
+    assert_eq!(about["complete"], 0);
+    assert!(about["samples"].as_u64().unwrap() >= seen);
 }
 
 #[test]
 fn interrupted_it_closes_the_table() {
     let folder = tempfile::tempdir().unwrap();
     let (child, table) = start(folder.path(), "long.csv");
-    let begin = Instant::now();
-    while !fs::metadata(&table).is_ok_and(|file| file.len() > 0) {
-        assert!(
-            begin.elapsed() < Duration::from_mins(1),
-            "no row was written"
-        );
-        sleep(Duration::from_millis(20));
-    }
+    wait_for("no row was written", || {
+        fs::metadata(&table).is_ok_and(|file| file.len() > 0)
+    });
     signal(&child, "-INT");
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130));

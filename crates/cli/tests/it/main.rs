@@ -2,6 +2,7 @@
 
 mod bench;
 mod command;
+mod command_line;
 mod first_use;
 mod interrupt;
 mod mistakes;

@@ -5,7 +5,7 @@
 use std::fmt::Write as _;
 use std::fs;
 
-use crate::command::{folder, run};
+use crate::command_line::{folder, run};
 
 /// Mistakes of a command line.
 const LINES: [&str; 41] = [

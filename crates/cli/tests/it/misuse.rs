@@ -1,6 +1,6 @@
 //! Command lines with a random mistake: no message has a word of a library's own, and none is a panic.
 
-use crate::command::{folder, run};
+use crate::command_line::{folder, run};
 
 /// Mistakes that are made.
 const MISTAKES: u64 = 120;

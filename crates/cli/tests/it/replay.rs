@@ -1,35 +1,15 @@
 //! `chaindrive replay`: pages of results, and what it refuses.
-#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::fs;
-use std::path::Path;
-use std::process::Command;
 
-/// Runs the command and returns exit code and stderr.
-fn run(folder: &Path, arguments: &[&str]) -> (i32, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
-    let output = command
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
-    (output.status.code().unwrap(), told)
-}
+use crate::command_line::{answer as run, folder, words};
 
 #[test]
 fn a_result_becomes_a_page_once() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
-    let short = [
-        "run",
-        "spinning_ring",
-        "--until",
-        "5 ms",
-        "--no-error",
-        "-q",
-    ];
-    let (code, told) = run(at, &[&short[..], &["-o", "ring.zarr"]].concat());
+    let short = words("run spinning_ring --until 5ms --no-error -q -o ring.zarr");
+    let (code, told) = run(at, &short);
     assert_eq!(code, 0, "{told}");
 
     let (code, told) = run(at, &["replay", "ring.zarr"]);
@@ -52,39 +32,24 @@ fn a_result_becomes_a_page_once() {
 /// The movie's whereabouts, the channels to record, and results that are none.
 #[test]
 fn refusals_say_what_to_try() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
-    let short = [
-        "run",
-        "spinning_ring",
-        "--until",
-        "1 ms",
-        "--no-error",
-        "-q",
-    ];
-    let still = ["--record", "energy_kinetic", "-o", "still.zarr"];
-    assert_eq!(run(at, &[&short[..], &still].concat()).0, 0);
-    for (arguments, code, hint) in [
-        (&["still.zarr"][..], 2, "--record roller_x,roller_y"),
-        (
-            &["still.zarr", "--mp4"],
-            2,
-            "pip install 'chaindrive[movie]'",
-        ),
-        (
-            &["still.zarr", "-o", "x.gif"],
-            2,
-            "pip install 'chaindrive[movie]'",
-        ),
-        (&["still.zarr", "-o", "x.pdf"], 2, "must end in .html"),
-        (&["still.zarr", "--frames", "0"], 2, "1 or more"),
-        (&["gone.zarr"], 2, "nothing of this name"),
-        (&[".", "-o", "x.html"], 2, "not a result of chaindrive"),
+    let short = "run spinning_ring --until 1ms --no-error -q --record energy_kinetic -o still.zarr";
+    assert_eq!(run(at, &words(short)).0, 0);
+    let movie = "pip install 'chaindrive[movie]'";
+    for (arguments, hint) in [
+        ("still.zarr", "--record roller_x,roller_y"),
+        ("still.zarr --mp4", movie),
+        ("still.zarr -o x.gif", movie),
+        ("still.zarr -o x.pdf", "must end in .html"),
+        ("still.zarr --frames 0", "1 or more"),
+        ("gone.zarr", "nothing of this name"),
+        (". -o x.html", "not a result of chaindrive"),
     ] {
-        let (found, told) = run(at, &[&["replay"], arguments].concat());
+        let (code, told) = run(at, &words(&format!("replay {arguments}")));
         assert!(
-            found == code && told.contains(hint),
-            "{arguments:?}: {found}, {told}"
+            code == 2 && told.contains(hint),
+            "{arguments}: {code}, {told}"
         );
     }
     assert!(!at.join("still.html").exists());

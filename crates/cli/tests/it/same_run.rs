@@ -5,12 +5,13 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use chaindrive::record::{Existing, InStore};
 use chaindrive::scene::presets;
 use chaindrive::{Given, Memory, Request, Scene, Settings, Stop, execute};
 use serde_json::Value;
+
+use crate::command_line::{attributes, run, words};
 
 /// Wall times: the only attributes that two runs of one request do not share.
 const WALL: [&str; 4] = [
@@ -80,24 +81,13 @@ pub(crate) fn timeless(attributes: &Value) -> serde_json::Map<String, Value> {
     attributes
 }
 
-fn group(store: &Path) -> Value {
-    let text = fs::read(store.join("zarr.json")).unwrap();
-    serde_json::from_slice::<Value>(&text).unwrap()["attributes"].clone()
-}
-
 fn hold(preset: &str, name: &str, case: &[Choice]) {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
-    command.current_dir(folder.path());
-    command.args([
-        "run", preset, "--until", "400 us", "--every", "100 us", "-q", "-o",
-    ]);
-    command.arg(at("command.zarr"));
-    for (_, option, value) in case {
-        command.args([option, value]);
-    }
-    assert!(command.status().unwrap().success());
+    let line = format!("run {preset} --until '400 us' --every '100 us' -q -o command.zarr");
+    let options = case.iter().flat_map(|(_, option, value)| [*option, *value]);
+    let arguments: Vec<&str> = words(&line).into_iter().chain(options).collect();
+    assert_eq!(run(folder.path(), &arguments).0, 0);
 
     let request = request(preset, case);
     let mut store = InStore::new(at("rust.zarr"), Existing::Keep);
@@ -108,7 +98,7 @@ fn hold(preset: &str, name: &str, case: &[Choice]) {
 
     let [command, rust] = ["command.zarr", "rust.zarr"].map(at);
     assert_eq!(files(&command), files(&rust), "{preset}, {name}");
-    let [command, rust] = [&command, &rust].map(|store| timeless(&group(store)));
+    let [command, rust] = [&command, &rust].map(|store| timeless(&attributes(store)));
     assert_eq!(command, rust, "{preset}, {name}");
     // Numbers of the store have passed through text, those of memory have not.
     let memory = serde_json::to_string(&report.attributes).unwrap();
@@ -139,7 +129,8 @@ fn the_command_and_rust_do_the_same() {
         ("run_in", "--run-in", "0 s"),
     ];
     hold("bicycle", "events", &joints);
-    hold("marine_two_sprockets", "default", &[]);
+    let run_in = [("run_in", "--run-in", "5 ms")];
+    hold("marine_two_sprockets", "run in", &run_in);
 }
 
 #[test]

@@ -6,68 +6,17 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-const SHORT: [&str; 6] = [
-    "run",
-    "spinning_ring",
-    "--until",
-    "5 ms",
-    "--no-error",
-    "-q",
-];
+use crate::command_line::{
+    answer as run, chaindrive, ended, folder, group, samples, signal, start, wait_for, words,
+};
+
+const SHORT: &str = "run spinning_ring --until '5 ms' --no-error -q";
 /// A run that would take hours.
-const LONG: [&str; 8] = [
-    "run",
-    "spinning_ring",
-    "--until",
-    "1e4",
-    "--every",
-    "1 ms",
-    "--no-error",
-    "-q",
-];
-
-pub(crate) fn chaindrive(at: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
-    command.current_dir(at).args(arguments);
-    command.stdout(Stdio::piped()).stderr(Stdio::piped());
-    command
-}
-
-/// Exit code and what was said on stderr.
-pub(crate) fn run(at: &Path, arguments: &[&str]) -> (Option<i32>, String) {
-    told(chaindrive(at, arguments).output().unwrap())
-}
-
-pub(crate) fn told(output: Output) -> (Option<i32>, String) {
-    (
-        output.status.code(),
-        String::from_utf8(output.stderr).unwrap(),
-    )
-}
-
-pub(crate) fn start(at: &Path, arguments: &[&str]) -> Child {
-    chaindrive(at, arguments).spawn().unwrap()
-}
-
-pub(crate) fn signal(child: &Child, name: &str) {
-    let sent = Command::new("kill")
-        .args([name, &child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(sent.success());
-}
-
-pub(crate) fn wait_for(what: &str, mut done: impl FnMut() -> bool) {
-    let begin = Instant::now();
-    while !done() {
-        assert!(begin.elapsed() < Duration::from_mins(1), "{what}");
-        sleep(Duration::from_millis(2));
-    }
-}
+const LONG: &str = "run spinning_ring --until 1e4 --every '1 ms' --no-error -q";
 
 /// Removes a folder into which another process writes: a file that it puts where the last one was
 /// just taken away makes the removal fail, and it is asked for again.
@@ -80,20 +29,9 @@ fn remove_under_way(folder: &Path) {
     });
 }
 
-pub(crate) fn group(store: &Path) -> Option<serde_json::Value> {
-    let text = fs::read(store.join("zarr.json")).ok()?;
-    // Whenever one looks, the document is whole.
-    Some(serde_json::from_slice(&text).unwrap())
-}
-
 pub(crate) fn status(store: &Path) -> String {
     let group = group(store).unwrap();
     group["attributes"]["status"].as_str().unwrap().to_owned()
-}
-
-pub(crate) fn samples(store: &Path) -> u64 {
-    let held = |group: serde_json::Value| group["attributes"]["samples"].as_u64();
-    group(store).and_then(held).unwrap_or(0)
 }
 
 fn last_line(table: &Path) -> String {
@@ -127,11 +65,11 @@ pub(crate) fn names(folder: &Path) -> Vec<String> {
 /// Moments from before the take-over to well after it.
 #[test]
 fn killed_while_it_replaces_a_result_it_leaves_the_old_or_the_new_one() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
     let store = at.join("ring.zarr");
     let replace = ["-o", "ring.zarr", "--overwrite"];
-    assert_eq!(run(at, &[&SHORT[..], &replace].concat()).0, Some(0));
+    assert_eq!(run(at, &[&words(SHORT)[..], &replace].concat()).0, 0);
     let mut old = files(&store);
     assert!(old.len() > 20, "{}", old.len());
     let (mut kept, mut replaced) = (0, 0);
@@ -140,7 +78,7 @@ fn killed_while_it_replaces_a_result_it_leaves_the_old_or_the_new_one() {
         if moment >= 24 && replaced > 0 {
             break;
         }
-        let mut child = start(at, &[&LONG[..], &replace].concat());
+        let mut child = start(at, &[&words(LONG)[..], &replace].concat());
         let lock = at.join(".ring.zarr.writing/lock");
         let claimed = format!("process {}", child.id());
         wait_for("no claim was made", || {
@@ -164,8 +102,8 @@ fn killed_while_it_replaces_a_result_it_leaves_the_old_or_the_new_one() {
             }
             replaced += 1;
             // Left behind by a dead process, it stands in nobody's way.
-            let (code, err) = run(at, &[&SHORT[..], &replace].concat());
-            assert_eq!((code, err.as_str()), (Some(0), ""));
+            let (code, err) = run(at, &[&words(SHORT)[..], &replace].concat());
+            assert_eq!((code, err.as_str()), (0, ""));
             assert_eq!(names(at), ["ring.zarr"]);
             old = files(&store);
         }
@@ -175,35 +113,35 @@ fn killed_while_it_replaces_a_result_it_leaves_the_old_or_the_new_one() {
 
 #[test]
 fn begun_and_killed_it_gives_way_to_a_plain_run() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
     let store = at.join("ring.zarr");
-    let mut child = start(at, &[&LONG[..], &["-o", "ring.zarr"]].concat());
+    let mut child = start(at, &[&words(LONG)[..], &["-o", "ring.zarr"]].concat());
     wait_for("nothing was begun", || store.exists());
     child.kill().unwrap();
     child.wait().unwrap();
     assert_eq!((status(&store).as_str(), samples(&store)), ("running", 0));
-    let (code, err) = run(at, &[&SHORT[..], &["-o", "ring.zarr"]].concat());
-    assert_eq!((code, err.as_str()), (Some(0), ""));
+    let (code, err) = run(at, &[&words(SHORT)[..], &["-o", "ring.zarr"]].concat());
+    assert_eq!((code, err.as_str()), (0, ""));
     assert_eq!(status(&store), "complete");
 }
 
 #[test]
 fn a_result_has_one_writer() {
     for name in ["ring.zarr", "ring.csv"] {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = folder();
         let at = folder.path();
-        let first = start(at, &[&LONG[..], &["-o", name]].concat());
+        let first = start(at, &[&words(LONG)[..], &["-o", name]].concat());
         wait_for("nothing was begun", || at.join(name).exists());
         for flags in [&["-o", name][..], &["-o", name, "--overwrite"]] {
-            let (code, err) = run(at, &[&SHORT[..], flags].concat());
-            assert_eq!(code, Some(3));
+            let (code, err) = run(at, &[&words(SHORT)[..], flags].concat());
+            assert_eq!(code, 3);
             let said = format!("{name}: process {} is writing a result here", first.id());
             assert!(err.starts_with(&said), "{err}");
         }
         signal(&first, "-TERM");
-        let (code, err) = told(first.wait_with_output().unwrap());
-        assert_eq!((code, err.as_str()), (Some(130), "interrupted\n"));
+        let (code, err) = ended(first);
+        assert_eq!((code, err.as_str()), (130, "interrupted\n"));
         assert_eq!(names(at), [name]);
     }
 }
@@ -219,14 +157,14 @@ fn every_signal_that_asks_for_an_end_is_heard() {
             // As under `nohup`: programs that it starts are not to hear it either.
             continue;
         }
-        let folder = tempfile::tempdir().unwrap();
+        let folder = folder();
         let at = folder.path();
         let path = at.join(name);
-        let child = start(at, &[&LONG[..], &["-o", name]].concat());
+        let child = start(at, &[&words(LONG)[..], &["-o", name]].concat());
         wait_for("nothing was begun", || path.exists());
         signal(&child, number);
-        let (code, err) = told(child.wait_with_output().unwrap());
-        assert_eq!((code, err.as_str()), (Some(130), "interrupted\n"));
+        let (code, err) = ended(child);
+        assert_eq!((code, err.as_str()), (130, "interrupted\n"));
         if path.is_dir() {
             assert_eq!(status(&path), "interrupted");
         } else {
@@ -247,10 +185,10 @@ fn hang_up_is_ignored() -> bool {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_run_that_is_not_to_hear_the_terminal_close_goes_on() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
     let store = at.join("ring.zarr");
-    let plain = chaindrive(at, &[&LONG[..], &["-o", "ring.zarr"]].concat());
+    let plain = chaindrive(at, &[&words(LONG)[..], &["-o", "ring.zarr"]].concat());
     let child = wrapped("trap '' HUP", &plain).spawn().unwrap();
     wait_for("nothing was begun", || store.exists());
     signal(&child, "-HUP");
@@ -277,10 +215,10 @@ pub(crate) fn wrapped(settings: &str, plain: &Command) -> Command {
 #[test]
 fn removed_under_way_it_is_not_made_anew() {
     for name in ["ring.zarr", "ring.csv"] {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = folder();
         let at = folder.path();
         let path = at.join(name);
-        let child = start(at, &[&LONG[..], &["-o", name]].concat());
+        let child = start(at, &[&words(LONG)[..], &["-o", name]].concat());
         wait_for("nothing was begun", || path.exists());
         if path.is_dir() {
             wait_for("nothing was committed", || samples(&path) > 0);
@@ -288,8 +226,8 @@ fn removed_under_way_it_is_not_made_anew() {
         } else {
             fs::remove_file(&path).unwrap();
         }
-        let (code, err) = told(child.wait_with_output().unwrap());
-        assert_eq!(code, Some(3), "{err}");
+        let (code, err) = ended(child);
+        assert_eq!(code, 3, "{err}");
         // A folder goes piece by piece: what the writer misses first may be a part of it.
         let missed =
             err.starts_with(&format!("{name}: `")) && path.extension() == Some("zarr".as_ref());
@@ -304,43 +242,34 @@ fn removed_under_way_it_is_not_made_anew() {
 
 #[test]
 fn with_a_part_removed_it_says_that_it_failed() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
     let store = at.join("ring.zarr");
-    let child = start(at, &[&LONG[..], &["-o", "ring.zarr"]].concat());
+    let child = start(at, &[&words(LONG)[..], &["-o", "ring.zarr"]].concat());
     wait_for("nothing was committed", || samples(&store) > 0);
     remove_under_way(&store.join("span"));
     signal(&child, "-INT");
-    let (code, err) = told(child.wait_with_output().unwrap());
-    assert_eq!(code, Some(3), "{err}");
+    let (code, err) = ended(child);
+    assert_eq!(code, 3, "{err}");
     assert!(err.contains("`span/"), "{err}");
     assert_eq!(status(&store), "failed");
 }
 
 /// A limit on the size of files \[bytes\] stands for a disk that is full; its signal would kill the program.
 #[cfg(target_os = "linux")]
-pub(crate) fn on_a_full_disk(limit: u64, at: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+pub(crate) fn on_a_full_disk(limit: u64, at: &Path, arguments: &[&str]) -> (i32, String) {
     let settings = format!("trap '' XFSZ; prlimit --pid $$ --fsize={limit}");
     let plain = chaindrive(at, arguments);
-    told(wrapped(&settings, &plain).output().unwrap())
+    ended(wrapped(&settings, &plain).spawn().unwrap())
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn on_a_full_disk_it_keeps_what_was_written() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
     // The chunks of 20 numbers a sample outgrow the limit, the group document does not.
-    let long = [
-        "run",
-        "spinning_ring",
-        "--until",
-        "300",
-        "--every",
-        "10 us",
-        "--no-error",
-        "-q",
-    ];
+    let long = words("run spinning_ring --until 300 --every '10 us' --no-error -q");
     let record = ["--record", "roller_x,roller_vy", "-o"];
 
     let (code, err) = on_a_full_disk(
@@ -348,7 +277,7 @@ fn on_a_full_disk_it_keeps_what_was_written() {
         at,
         &[&long[..], &record, &["ring.zarr"]].concat(),
     );
-    assert_eq!(code, Some(3), "{err}");
+    assert_eq!(code, 3, "{err}");
     assert!(err.starts_with("ring.zarr: File too large"), "{err}");
     let store = at.join("ring.zarr");
     let group = group(&store).unwrap();
@@ -367,7 +296,7 @@ fn on_a_full_disk_it_keeps_what_was_written() {
 
     // A table that grows until the disk is full under it.
     let (code, err) = on_a_full_disk(200 << 10, at, &[&long[..], &record, &["ring.csv"]].concat());
-    assert_eq!(code, Some(3), "{err}");
+    assert_eq!(code, 3, "{err}");
     assert!(err.starts_with("ring.csv: File too large"), "{err}");
     let table = at.join("ring.csv");
     assert!(last_line(&table).starts_with("# incomplete: "));
@@ -385,22 +314,12 @@ fn on_a_full_disk_it_keeps_what_was_written() {
 #[cfg(target_os = "linux")]
 #[test]
 fn wherever_the_disk_is_full_whole_rows_and_a_closing_line_stay() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
-    let plain = [
-        "run",
-        "spinning_ring",
-        "--until",
-        "1 ms",
-        "--every",
-        "10 us",
-        "--no-error",
-        "-q",
-        "--record",
-        "energy_kinetic",
-        "-o",
-    ];
-    assert_eq!(run(at, &[&plain[..], &["whole.csv"]].concat()).0, Some(0));
+    let plain = words(
+        "run spinning_ring --until '1 ms' --every '10 us' --no-error -q --record energy_kinetic -o",
+    );
+    assert_eq!(run(at, &[&plain[..], &["whole.csv"]].concat()).0, 0);
     let whole = fs::read_to_string(at.join("whole.csv")).unwrap();
     let ends: Vec<usize> = whole.match_indices('\n').map(|(at, _)| at + 1).collect();
     let shortest = "# incomplete: failed\n".len();
@@ -412,7 +331,7 @@ fn wherever_the_disk_is_full_whole_rows_and_a_closing_line_stay() {
     for limit in middle.chain(last) {
         let csv = ["ring.csv", "--overwrite"];
         let (code, err) = on_a_full_disk(limit as u64, at, &[&plain[..], &csv].concat());
-        assert_eq!(code, Some(3), "{err}");
+        assert_eq!(code, 3, "{err}");
         assert!(err.starts_with("ring.csv: File too large"), "{err}");
         let kept = ends.iter().rfind(|&&end| end + shortest <= limit).unwrap();
         let text = fs::read_to_string(at.join("ring.csv")).unwrap();
@@ -430,36 +349,18 @@ fn wherever_the_disk_is_full_whole_rows_and_a_closing_line_stay() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_checkpoint_that_does_not_fit_ends_the_run_and_leaves_nothing_half_written() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
-    let scene = [
-        "run",
-        "bicycle",
-        "--until",
-        "0.2 ms",
-        "--run-in",
-        "0",
-        "--method",
-        "implicit-damping",
-    ];
+    let scene = words("run bicycle --until '0.2 ms' --run-in 0 --method implicit-damping");
     let longer = [
         "--set",
         "chain.links=200",
         "--set",
         "sprockets.rear.centre=['-1.070144624366 m', '0 m']",
     ];
-    let to = [
-        "--no-error",
-        "-q",
-        "--record",
-        "span_tension",
-        "-o",
-        "run.zarr",
-        "--checkpoint-every",
-        "50 us",
-    ];
+    let to = words("--no-error -q --record span_tension -o run.zarr --checkpoint-every '50 us'");
     let (code, err) = on_a_full_disk(130 << 10, at, &[&scene[..], &longer, &to].concat());
-    assert_eq!(code, Some(3), "{err}");
+    assert_eq!(code, 3, "{err}");
     let store = at.join("run.zarr");
     assert_eq!(status(&store), "failed");
     let left = names(&store);
@@ -468,48 +369,39 @@ fn a_checkpoint_that_does_not_fit_ends_the_run_and_leaves_nothing_half_written()
         "{left:?}"
     );
     let (code, err) = run(at, &["resume", "run.zarr"]);
-    assert_eq!(code, Some(2), "{err}");
+    assert_eq!(code, 2, "{err}");
     assert!(err.contains("File too large"), "{err}");
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn a_sweep_on_a_full_disk_leaves_nothing_half_done() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
-    let sweep = [
-        "sweep",
-        "spinning_ring",
-        "--until",
-        "1 ms",
-        "-q",
-        "-o",
-        "s.csv",
-        "--vary",
-    ];
+    let sweep = words("sweep spinning_ring --until '1 ms' -q -o s.csv --vary");
     let few = [&sweep[..], &["chain.mass=8 g,9 g"]].concat();
-    assert_eq!(run(at, &few).0, Some(0));
+    assert_eq!(run(at, &few).0, 0);
     let old = fs::read_to_string(at.join("s.csv")).unwrap();
     let (code, err) = on_a_full_disk(512, at, &[&few[..], &["--overwrite"]].concat());
-    assert_eq!(code, Some(3), "{err}");
+    assert_eq!(code, 3, "{err}");
     assert_eq!(fs::read_to_string(at.join("s.csv")).unwrap(), old);
     assert_eq!(names(at), ["s.csv"]);
 }
 
 #[test]
 fn a_link_is_followed_and_one_to_nowhere_is_refused() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
     fs::create_dir(at.join("big")).unwrap();
     for name in ["ring.zarr", "ring.csv"] {
         std::os::unix::fs::symlink(Path::new("big").join(name), at.join(name)).unwrap();
-        let to = [&SHORT[..], &["-o", name]].concat();
+        let to = [&words(SHORT)[..], &["-o", name]].concat();
         let (code, err) = run(at, &to);
-        assert_eq!(code, Some(3));
+        assert_eq!(code, 3);
         assert!(err.contains("symbolic link to big/ring."), "{err}");
         let real = format!("big/{name}");
-        assert_eq!(run(at, &[&SHORT[..], &["-o", &real]].concat()).0, Some(0));
-        assert_eq!(run(at, &[&to[..], &["--overwrite"]].concat()).0, Some(0));
+        assert_eq!(run(at, &[&words(SHORT)[..], &["-o", &real]].concat()).0, 0);
+        assert_eq!(run(at, &[&to[..], &["--overwrite"]].concat()).0, 0);
         assert!(at.join(name).is_symlink());
     }
     assert_eq!(names(&at.join("big")), ["ring.csv", "ring.zarr"]);
@@ -517,27 +409,17 @@ fn a_link_is_followed_and_one_to_nowhere_is_refused() {
 
 #[test]
 fn tables_name_units_and_contacts_have_one_of_their_own() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
     let run_with = |more: &[&str]| {
-        let plain = [
-            "run",
-            "marine_two_sprockets",
-            "--until",
-            "2 ms",
-            "--every",
-            "1 ms",
-        ];
+        let plain = words("run marine_two_sprockets --until '2 ms' --every '1 ms'");
         let rest = ["--no-error", "-q", "-o", "drive.csv"];
         let (code, err) = run(at, &[&plain[..], &rest, more].concat());
-        assert_eq!(code, Some(0), "{err}");
+        assert_eq!(code, 0, "{err}");
     };
-    run_with(&[
-        "--events",
-        "teeth",
-        "--record",
-        "sprocket_speed,contacts,energy_kinetic",
-    ]);
+    run_with(&words(
+        "--events teeth --record sprocket_speed,contacts,energy_kinetic",
+    ));
     let table = fs::read_to_string(at.join("drive.csv")).unwrap();
     assert_eq!(
         table.lines().next().unwrap(),

@@ -1,53 +1,26 @@
 //! `chaindrive sweep`: what it writes, what it says, how it ends.
-#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use crate::command_line::{attributes, folder, run, signal, start, told, wait_for, words};
+
 /// Runs a sweep and returns exit code, stdout and stderr.
 fn sweep(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
-    let command = command.current_dir(folder).arg("sweep").args(arguments);
-    let output = command.output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (
-        output.status.code().unwrap(),
-        text(output.stdout),
-        text(output.stderr),
-    )
-}
-
-fn attributes(store: &Path) -> serde_json::Value {
-    let group = fs::read(store.join("zarr.json")).unwrap();
-    let group: serde_json::Value = serde_json::from_slice(&group).unwrap();
-    group["attributes"].clone()
+    run(folder, &[&["sweep"], arguments].concat())
 }
 
 /// Crank speeds of the marine engine, as a range in turns, and its pretension, as a list.
 #[test]
 fn speeds_and_pretensions_of_the_marine_engine() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
-    let arguments = [
-        "marine_engine",
-        "--vary",
-        "sprockets.crank.motion.speed=-80 rpm..-140 rpm/3",
-        "--vary",
-        "route.pretension=10 kN,20 kN",
-        "--until",
-        "1 ms",
-        "--run-in",
-        "0",
-        "--record",
-        "span_tension",
-        "-j",
-        "2",
-        "-o",
-        "marine.zarr",
-    ];
+    let arguments = words(
+        "marine_engine --vary 'sprockets.crank.motion.speed=-80 rpm..-140 rpm/3' --vary 'route.pretension=10 kN,20 kN' \
+         --until '1 ms' --run-in 0 --record span_tension -j 2 -o marine.zarr",
+    );
     let (code, out, err) = sweep(at, &arguments);
     assert_eq!(
         (code, err.as_str()),
@@ -81,18 +54,11 @@ fn speeds_and_pretensions_of_the_marine_engine() {
 /// A cell is read as a value of `--vary` is.
 #[test]
 fn the_rows_of_a_table_are_variants() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
     let table = "chain.start.speed, chain.mass\n300 rad/s, 8 g\n400, 0.009\n300, 8 g\n";
     fs::write(at.join("points.csv"), table).unwrap();
-    let table = [
-        "spinning_ring",
-        "--until",
-        "1 ms",
-        "-o",
-        "ring.csv",
-        "--design",
-    ];
+    let table = words("spinning_ring --until '1 ms' -o ring.csv --design");
     let design = |name, more: &[&str]| sweep(at, &[&table[..], &[name], more].concat());
     let (code, out, err) = design("points.csv", &[]);
     assert_eq!((code, err.as_str()), (0, ""), "{out}");
@@ -120,19 +86,13 @@ fn the_rows_of_a_table_are_variants() {
 
 #[test]
 fn variants_that_fail_are_listed_and_the_others_kept() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
     let (code, out, err) = sweep(
         at,
-        &[
-            "spinning_ring",
-            "--vary",
-            "chain.start.speed=300 rad/s,1e300 rad/s",
-            "--until",
-            "1 ms",
-            "-o",
-            "ring.csv",
-        ],
+        &words(
+            "spinning_ring --vary 'chain.start.speed=300 rad/s,1e300 rad/s' --until '1 ms' -o ring.csv",
+        ),
     );
     assert_eq!(code, 1, "{err}");
     assert!(out.contains("1 of 2 done, 1 failed"), "{out}");
@@ -157,62 +117,31 @@ fn variants_that_fail_are_listed_and_the_others_kept() {
 
 #[test]
 fn what_is_wrong_is_refused_before_anything_is_written() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
-    let cases: [(&[&str], i32, &str); 8] = [
-        (&["spinning_ring"], 2, "--vary"),
+    let cases = [
+        ("", 2, "--vary"),
+        ("--vary chain.links", 2, "a path and its values"),
+        ("--vary chain.lnks=20,22", 2, "lnks"),
+        ("--vary chain.links=20,20", 2, "stands twice"),
+        ("--vary 'chain.mass=1 g..2 g'", 2, "FIRST..LAST/COUNT"),
+        ("--vary chain.links=20 -j 0", 2, "--jobs"),
         (
-            &["spinning_ring", "--vary", "chain.links"],
-            2,
-            "a path and its values",
-        ),
-        (&["spinning_ring", "--vary", "chain.lnks=20,22"], 2, "lnks"),
-        (
-            &["spinning_ring", "--vary", "chain.links=20,20"],
-            2,
-            "stands twice",
-        ),
-        (
-            &["spinning_ring", "--vary", "chain.mass=1 g..2 g"],
-            2,
-            "FIRST..LAST/COUNT",
-        ),
-        (
-            &["spinning_ring", "--vary", "chain.links=20", "-j", "0"],
-            2,
-            "--jobs",
-        ),
-        (
-            &[
-                "spinning_ring",
-                "--vary",
-                "chain.links=20",
-                "--record",
-                "link_tension",
-                "-o",
-                "a.csv",
-            ],
+            "--vary chain.links=20 --record link_tension -o a.csv",
             2,
             "take a .zarr store",
         ),
         (
-            &[
-                "spinning_ring",
-                "--vary",
-                "chain.links=20",
-                "-o",
-                "notes.csv",
-                "--overwrite",
-            ],
+            "--vary chain.links=20 -o notes.csv --overwrite",
             3,
             "not a table",
         ),
     ];
     fs::write(at.join("notes.csv"), "variants of last week\n").unwrap();
-    for (arguments, expected, words) in cases {
-        let (code, out, err) = sweep(at, arguments);
-        assert_eq!((code, out.as_str()), (expected, ""), "{arguments:?}: {err}");
-        assert!(err.contains(words), "{arguments:?}: {err}");
+    for (arguments, expected, told) in cases {
+        let (code, out, err) = sweep(at, &words(&format!("spinning_ring {arguments}")));
+        assert_eq!((code, out.as_str()), (expected, ""), "{arguments}: {err}");
+        assert!(err.contains(told), "{arguments}: {err}");
     }
     assert_eq!(fs::read_dir(at).unwrap().count(), 1);
 }
@@ -220,56 +149,51 @@ fn what_is_wrong_is_refused_before_anything_is_written() {
 /// Neither of two answers to one question wins silently.
 #[test]
 fn what_is_varied_is_not_given_as_well() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let at = folder.path();
-    let cases: [(&[&str], &str); 9] = [
+    let cases = [
         (
-            &["--vary", "run.until=1 ms,2 ms", "--until", "3 ms"],
+            "--vary 'run.until=1 ms,2 ms' --until 3ms",
             "`run.until` is varied, and given as `--until` as well; give one of them",
         ),
         (
-            &["--vary", "run . every=1 ms", "--every", "3 ms"],
+            "--vary 'run . every=1 ms' --every 3ms",
             "given as `--every`",
         ),
         (
-            &["--vary", "run={method='rk4'},{}", "--step", "1 us"],
+            "--vary run={method=\"rk4\"},{} --step 1us",
             "`run` is varied, and given as `--step`",
         ),
         (
-            &[
-                "--vary",
-                "run.record=['link_tension']",
-                "--record",
-                "contacts",
-            ],
+            "--vary run.record=[\"link_tension\"] --record contacts",
             "given as `--record`",
         ),
         (
-            &["--vary", "run.events=['teeth'],[]", "--events", "teeth"],
+            "--vary run.events=[\"teeth\"],[] --events teeth",
             "given as `--events`",
         ),
         (
-            &["--vary", "chain.mass=1 g,2 g", "--set", "chain.mass=3 g"],
+            "--vary 'chain.mass=1 g,2 g' --set 'chain.mass=3 g'",
             "given as `--set chain.mass`",
         ),
         (
-            &["--vary", "run.accuracy=1%,2%", "--method", "rk4"],
+            "--vary run.accuracy=1%,2% --method rk4",
             "`run.accuracy` is varied, and given as `--method`",
         ),
         (
-            &["--vary", "run.step=1 us,2 us", "--accuracy", "1%"],
+            "--vary 'run.step=1 us,2 us' --accuracy 1%",
             "`run.accuracy` asks for an accuracy",
         ),
         (
-            &["--vary", "chain.mass=1 g,2 g", "--vary", "chain='08B-1'"],
+            "--vary 'chain.mass=1 g,2 g' --vary chain=\"08B-1\"",
             "`chain.mass` is varied, and then replaced",
         ),
     ];
-    for (arguments, words) in cases {
-        let arguments = [&["spinning_ring", "-o", "a.zarr"], arguments].concat();
-        let (code, out, err) = sweep(at, &arguments);
-        assert_eq!((code, out.as_str()), (2, ""), "{arguments:?}: {err}");
-        assert!(err.contains(words), "{arguments:?}: {err}");
+    for (arguments, told) in cases {
+        let line = format!("spinning_ring -o a.zarr {arguments}");
+        let (code, out, err) = sweep(at, &words(&line));
+        assert_eq!((code, out.as_str()), (2, ""), "{line}: {err}");
+        assert!(err.contains(told), "{line}: {err}");
     }
     assert_eq!(fs::read_dir(at).unwrap().count(), 0);
 }
@@ -277,20 +201,10 @@ fn what_is_varied_is_not_given_as_well() {
 /// The command line speaks last, in a sweep as in a run.
 #[test]
 fn a_named_method_goes_before_the_accuracy_of_the_scene() {
-    let folder = tempfile::tempdir().unwrap();
-    let arguments = [
-        "spinning_ring",
-        "--set",
-        "run.accuracy=1%",
-        "--vary",
-        "chain.start.speed=300",
-        "--until",
-        "1 ms",
-        "-o",
-        "a.zarr",
-        "--method",
-        "rk4",
-    ];
+    let folder = folder();
+    let arguments = words(
+        "spinning_ring --set run.accuracy=1% --vary chain.start.speed=300 --until 1ms -o a.zarr --method rk4",
+    );
     let (code, _, err) = sweep(folder.path(), &arguments);
     assert_eq!((code, err.as_str()), (0, ""));
     let about = attributes(&folder.path().join("a.zarr"));
@@ -316,22 +230,13 @@ fn the_help_says_that_a_choice_serves_many_variants() {
 /// Waits until the result of the first variant is written.
 #[cfg(unix)]
 fn wait_for_a_variant(path: &Path) {
-    let begin = Instant::now();
-    loop {
-        let finished = if path.join("zarr.json").exists() {
+    wait_for("nothing was written", || {
+        if path.join("zarr.json").exists() {
             attributes(path)["finished"].as_u64() > Some(0)
         } else {
             fs::metadata(path).is_ok_and(|file| file.is_file() && file.len() > 0)
-        };
-        if finished {
-            return;
         }
-        assert!(
-            begin.elapsed() < Duration::from_mins(1),
-            "nothing was written"
-        );
-        sleep(Duration::from_millis(20));
-    }
+    });
 }
 
 /// The first variant ends at once, the others would take days.
@@ -339,37 +244,16 @@ fn wait_for_a_variant(path: &Path) {
 #[test]
 fn interrupted_it_keeps_what_is_finished() {
     for out in ["long.zarr", "long.csv"] {
-        let folder = tempfile::tempdir().unwrap();
-        let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
-        command
-            .current_dir(folder.path())
-            .args([
-                "sweep",
-                "spinning_ring",
-                "--every",
-                "1 ms",
-                "-j",
-                "2",
-                "-o",
-                out,
-            ])
-            .args(["--vary", "run.until=1 ms,2e4 s,3e4 s,4e4 s"])
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped());
-        let child = command.spawn().unwrap();
+        let folder = folder();
+        let long = words(
+            "sweep spinning_ring --every 1ms -j 2 --vary 'run.until=1 ms,2e4 s,3e4 s,4e4 s' -o",
+        );
+        let child = start(folder.path(), &[&long[..], &[out]].concat());
         let path = folder.path().join(out);
         wait_for_a_variant(&path);
-        let sent = Command::new("kill")
-            .args(["-INT", &child.id().to_string()])
-            .status();
-        assert!(sent.unwrap().success());
-        let output = child.wait_with_output().unwrap();
-        let err = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(
-            (output.status.code(), err.as_str()),
-            (Some(130), "interrupted\n")
-        );
-        let text = String::from_utf8(output.stdout).unwrap();
+        signal(&child, "-INT");
+        let (code, text, err) = told(child.wait_with_output().unwrap());
+        assert_eq!((code, err.as_str()), (130, "interrupted\n"));
         assert!(
             text.ends_with("variants: 1 of 4 done, 3 not carried out\n"),
             "{text}"
@@ -391,7 +275,7 @@ fn interrupted_it_keeps_what_is_finished() {
 #[cfg(unix)]
 #[test]
 fn interrupted_it_says_what_it_is_and_goes_on() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     let common = ["spinning_ring", "--vary", "chain.start.speed=300..400/40"];
     let run = ["--until", "20 ms", "--every", "1 ms", "-q", "-j", "2", "-o"];
     let arguments = |out| [&common[..], &run[..], &[out]].concat();
@@ -400,14 +284,10 @@ fn interrupted_it_says_what_it_is_and_goes_on() {
     let took = begin.elapsed();
     let path = folder.path().join("broken.zarr");
     for share in [0.5, 0.3, 0.1, 0.6] {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
-        command.current_dir(folder.path()).arg("sweep");
-        let mut child = command.args(arguments("broken.zarr")).spawn().unwrap();
+        let again = [&["sweep"], &arguments("broken.zarr")[..]].concat();
+        let mut child = start(folder.path(), &again);
         sleep(took.mul_f64(share));
-        let sent = Command::new("kill")
-            .args(["-INT", &child.id().to_string()])
-            .status();
-        assert!(sent.is_ok());
+        signal(&child, "-INT");
         let code = child.wait().unwrap().code();
         if !path.exists() {
             assert_eq!(code, Some(130));
@@ -453,7 +333,7 @@ fn interrupted_before_it_has_anything_it_leaves_the_earlier_result() {
         ("ring.zarr", format!("run.until={}", stored.join(","))),
         ("ring.csv", format!("run.until={}", long.join(","))),
     ] {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = folder();
         let common = ["spinning_ring", "--every", "1 ms", "-j", "1", "-o", out];
         let earlier = ["--vary", "run.until=1 ms,2 ms", "-q"];
         let (code, _, err) = sweep(folder.path(), &[&common[..], &earlier].concat());
@@ -469,27 +349,15 @@ fn interrupted_before_it_has_anything_it_leaves_the_earlier_result() {
         };
         let kept = last(&path);
 
-        let mut command = Command::new(env!("CARGO_BIN_EXE_chaindrive"));
-        command.current_dir(folder.path()).arg("sweep").args(common);
-        command.args(["--vary", &values, "--overwrite", "-q"]);
-        let child = command.stderr(Stdio::piped()).spawn().unwrap();
+        let over = ["--vary", &values, "--overwrite", "-q"];
+        let child = start(folder.path(), &[&["sweep"], &common[..], &over].concat());
         let begun = folder.path().join(format!(".{out}.writing/lock"));
-        let begin = Instant::now();
-        while !begun.exists() {
-            assert!(
-                begin.elapsed() < Duration::from_mins(1),
-                "it does not begin"
-            );
-            sleep(Duration::from_millis(5));
-        }
+        wait_for("it does not begin", || begun.exists());
         // Long enough to lay out the new store.
         sleep(Duration::from_millis(200));
         assert_eq!(last(&path), kept, "{out}");
-        let sent = Command::new("kill")
-            .args(["-INT", &child.id().to_string()])
-            .status();
-        assert!(sent.unwrap().success());
-        assert_eq!(child.wait_with_output().unwrap().status.code(), Some(130));
+        signal(&child, "-INT");
+        assert_eq!(told(child.wait_with_output().unwrap()).0, 130);
         assert_eq!(last(&path), kept, "{out}");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
@@ -497,12 +365,8 @@ fn interrupted_before_it_has_anything_it_leaves_the_earlier_result() {
 
 #[test]
 fn values_that_no_variant_can_have_are_refused_before_it_begins() {
-    let folder = tempfile::tempdir().unwrap();
-    let damping = [
-        "spinning_ring",
-        "--vary",
-        "chain.damping=10 N s/m,20 N s/m,30 N s/m",
-    ];
+    let folder = folder();
+    let damping = words("spinning_ring --vary 'chain.damping=10 N s/m,20 N s/m,30 N s/m'");
     let both = ["--vary", "chain.damping_ratio=0.01,0.02", "-o", "ring.csv"];
     let (code, out, err) = sweep(folder.path(), &[&damping[..], &both].concat());
     assert_eq!((code, out.as_str()), (2, ""), "{err}");

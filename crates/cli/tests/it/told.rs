@@ -2,7 +2,7 @@
 //!
 //! After a change that is meant: `INSTA_UPDATE=always cargo test -p chaindrive-cli --test it told`, and look at what git shows.
 
-use crate::command::{folder, run};
+use crate::command_line::{folder, run};
 
 #[test]
 fn the_summary_of_a_run() {

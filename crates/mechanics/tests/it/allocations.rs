@@ -10,7 +10,8 @@ use chaindrive_mechanics::{
     Articulation, BushStrands, ChainModel, FreeRoller, Joint, Parts, PointJoints, Support,
 };
 
-use crate::several_chains::{EVEN, assembled, chain, driven, pair, parts, with_play};
+use crate::pieces::assembled;
+use crate::several_chains::{EVEN, chain, driven, pair, parts, with_play};
 
 /// Explicit and implicit methods that take steps of this length \[s\].
 fn methods(step: f64) -> Vec<Method> {

@@ -1,16 +1,18 @@
 //! Friction and damping in the joints of every chain model: momentum, energy.
 #![allow(clippy::print_stdout, reason = "measured errors are worth a look")]
 
+use crate::pieces;
+use crate::pieces::{alone, body, laid, linear, smooth};
+
 use std::f64::consts::{PI, TAU};
 
-use chaindrive_contact::elastic::Power;
+use chaindrive_contact::Friction;
 use chaindrive_contact::friction::{Coulomb, SpringSlider};
-use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State};
 use chaindrive_mechanics::{
-    Articulation, Assembled, Chain, ChainModel, Clearance, Drive, End, Ends, Energy, Flow, Joint,
-    Layout, LinkBody, Observation, Parts, PlacedChain, RigidLinks, RollerModel, Strength, Surface,
+    Articulation, Assembled, Chain, ChainModel, Clearance, End, Ends, Energy, Flow, Joint,
+    Observation, RigidLinks, RollerModel, Surface,
 };
 
 /// A chain of a marine engine, 56B: pitch \[m\], mass of a link \[kg\], stiffness \[N/m\].
@@ -42,32 +44,7 @@ fn articulation(friction: Friction, damping: f64) -> Articulation {
 }
 
 fn assembled(chain: Chain, positions: Vec<Point>, velocities: Vec<Vector>) -> Assembled {
-    let parts = Parts {
-        chains: vec![PlacedChain {
-            name: None,
-            chain,
-            layout: Layout::Points {
-                positions,
-                velocities,
-            },
-            sprockets: Vec::new(),
-            guides: Vec::new(),
-        }],
-        sprockets: Vec::new(),
-        guides: Vec::new(),
-        tensioners: Vec::new(),
-        shafts: Vec::new(),
-        couplings: Vec::new(),
-        gears: Vec::new(),
-        settle: false,
-        gravity: Vector::zeros(),
-        oil: None,
-        tunable: Vec::new(),
-    };
-    Drive::new(parts)
-        .unwrap_or_else(|problems| panic!("{problems:?}"))
-        .assemble()
-        .unwrap_or_else(|error| panic!("{error}"))
+    pieces::assembled(alone(vec![laid(chain, positions, velocities)]))
 }
 
 fn chain(
@@ -76,21 +53,11 @@ fn chain(
     ends: Ends,
     articulation: Option<Articulation>,
 ) -> Chain {
-    let rollers = links + usize::from(ends != Ends::Closed);
+    let of = [PITCH, MASS, stiffness];
     Chain {
-        pitch: PITCH,
         lengths: vec![length; links],
-        stiffness: vec![stiffness; links],
-        damping: vec![0.0; links],
-        masses: vec![MASS; rollers],
-        roller_diameter: 0.05,
-        roller_deviations: Vec::new(),
-        plate_height: 0.08,
-        strength: Strength::default(),
         articulation,
-        drag: 0.0,
-        ends,
-        model: ChainModel::Particles,
+        ..pieces::links(links, of, [0.05, 0.08], ends, ChainModel::Particles)
     }
 }
 
@@ -142,11 +109,7 @@ fn run(assembled: Assembled, step: f64, until: f64, mut see: impl FnMut(&State))
 
 /// Rigid links of the same chain.
 fn rigid(joint: Joint) -> ChainModel {
-    let body = LinkBody {
-        mass: MASS,
-        inertia: MASS * PITCH * PITCH / 10.0,
-        centre: Vector::zeros(),
-    };
+    let body = body(MASS, MASS * PITCH * PITCH / 10.0);
     ChainModel::Rigid(RigidLinks {
         inner: body,
         outer: body,
@@ -162,14 +125,8 @@ fn clearance(friction: Friction) -> Joint {
         pin_radius: RADIUS,
         bore_radius: 1.01 * RADIUS,
         surface: Surface {
-            law: Law {
-                elastic: Elastic::Power(Power::linear(STIFFNESS)),
-                series: None,
-                dissipation: Dissipation::None,
-                onset_floor: 0.01,
-            },
             friction,
-            film: None,
+            ..smooth(linear(STIFFNESS))
         },
     })
 }

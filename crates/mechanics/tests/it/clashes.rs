@@ -1,26 +1,20 @@
 //! Bodies in each other's way, chains through guides, and profiles in their places.
 
-use chaindrive_contact::dissipation::Dissipation;
-use chaindrive_contact::elastic::Power;
-use chaindrive_contact::{Elastic, Friction, Law};
+use chaindrive_contact::Law;
 use chaindrive_geometry::{Arc, ArcSpline, Piece, Point, Segment, Vector, bar};
 use chaindrive_mechanics::carriers::{Arm, Slider};
 use chaindrive_mechanics::{
     AssemblyError, Carrier, Clash, Drive, DriveError, Guide, GuideSupport, Layout, Parts, Push,
-    Support, Surface, Tensioner, Touches,
+    Support, Tensioner, Touches,
 };
 
 use crate::marine;
+use crate::pieces::{linear, smooth};
 
 const TIP: f64 = 0.75;
 
 fn law() -> Law {
-    Law {
-        series: None,
-        elastic: Elastic::Power(Power::linear(1e8)),
-        dissipation: Dissipation::None,
-        onset_floor: 0.01,
-    }
+    linear(1e8)
 }
 
 fn guide(name: &str, face: ArcSpline) -> Guide {
@@ -29,11 +23,7 @@ fn guide(name: &str, face: ArcSpline) -> Guide {
         face,
         support: GuideSupport::Fixed,
         touches: Touches::Rollers,
-        surface: Surface {
-            law: law(),
-            friction: Friction::None,
-            film: None,
-        },
+        surface: smooth(law()),
     }
 }
 

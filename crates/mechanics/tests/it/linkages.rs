@@ -1,18 +1,20 @@
 //! Eliminations and contacts of chains of rigid links, each computed in two ways.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
+use crate::pieces;
+use crate::pieces::{around, assembled, body};
+
 use chaindrive_contact::dissipation::LankaraniNikravesh;
 use chaindrive_contact::elastic::{CylinderLaw, Cylinders, ElasticLaw, Power};
 use chaindrive_contact::friction::Coulomb;
 use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
-use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
+use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{InstructionSet, Moment, Registers, SecondOrderSystem, Weights};
 use chaindrive_mechanics::inside::{chain, teeth};
 use chaindrive_mechanics::{
-    Adjust, Assembled, Chain, ChainModel, Clearance, Coupling, Drive, End, Ends, Fit, Flank, Flow,
-    FreeRoller, Joint, Layout, LinkBody, Motion, Observation, Parts, PlacedChain, PretensionAt,
-    Record, RigidLinks, RollerModel, Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop,
-    Strength, Support, Surface, System, Tighten, Tolerance, Torque,
+    Assembled, ChainModel, Clearance, Coupling, End, Ends, Flank, Flow, FreeRoller, Joint, Layout,
+    Motion, Observation, Parts, Record, RigidLinks, RollerModel, Rotation, Shaft, Sprocket,
+    StartSpeed, Support, Surface, System, Torque,
 };
 use nalgebra::DVector;
 
@@ -39,28 +41,14 @@ fn surface(hole: f64, pin: f64, length: f64) -> Surface {
 
 /// 44/18 teeth, 104 links of half an inch, centre distance computed so that they close without stress.
 fn bicycle(model: ChainModel) -> Parts {
-    let (pitch, links, roller_diameter) = (0.0127, 104, 7.75e-3);
-    let form = ToothForm::Iso606 {
-        gap: 0.5,
-        tip: Tip::Mid,
-        seat: Seat::Bottom,
-    };
-    let sprocket = |name: &str, teeth: u32, x: f64, shaft: usize, inertia: f64| Sprocket {
-        name: name.into(),
-        gap: ToothGap::new(teeth, pitch, roller_diameter, &form).unwrap(),
-        side: Side::Left,
-        centre: Point::new(x, 0.0),
-        shaft,
-        support: Support::Fixed,
-        inertia,
-        mass: 1.0,
-        surface: surface(3.982e-3, 3.875e-3, 3.3e-3),
-        stack: None,
-        flank: None,
-        gap_angle: 0.0,
-        tolerance: Tolerance::default(),
-        lateral: 0.0,
-        loss: chaindrive_mechanics::ShaftLoss::default(),
+    let (pitch, roller_diameter) = (0.0127, 7.75e-3);
+    let sprocket = |name: &str, teeth: u32, x: f64, shaft: usize, inertia: f64| {
+        let surface = surface(3.982e-3, 3.875e-3, 3.3e-3);
+        Sprocket {
+            shaft,
+            inertia,
+            ..pieces::sprocket(name, teeth, [pitch, roller_diameter], [x, 0.0], surface)
+        }
     };
     let driven = Rotation::Free {
         drive: Vec::new(),
@@ -68,63 +56,22 @@ fn bicycle(model: ChainModel) -> Parts {
         start: StartSpeed::Joined,
     };
     let driver = Rotation::Prescribed(Motion::Constant { rate: -9.42 });
+    let of = [pitch, 3.81e-3, 47.7e6];
+    let mut chain = pieces::links(104, of, [roller_diameter, 9.6e-3], Ends::Closed, model);
+    chain.damping.fill(25.6);
     Parts {
-        chains: vec![PlacedChain {
-            name: None,
-            chain: Chain {
-                pitch,
-                lengths: vec![pitch; links],
-                stiffness: vec![47.7e6; links],
-                damping: vec![25.6; links],
-                masses: vec![3.81e-3; links],
-                roller_diameter,
-                roller_deviations: Vec::new(),
-                plate_height: 9.6e-3,
-                strength: Strength::default(),
-                articulation: None,
-                drag: 0.0,
-                ends: Ends::Closed,
-                model,
-            },
-            layout: Layout::Route {
-                stops: vec![Stop::Sprocket(0), Stop::Sprocket(1)],
-                phase: 0.5,
-                start: SpanStart::Polygon,
-                fit: Fit {
-                    growth: 0.0,
-                    sag: None,
-                    slack: None,
-                    adjust: Adjust::Nothing,
-                    pretension: 60.0,
-                    tighten: Tighten::RestLength,
-                    at: PretensionAt::Phase,
-                },
-            },
-            sprockets: vec![0, 1],
-            guides: Vec::new(),
-        }],
         sprockets: vec![
             sprocket("chainring", 44, 0.0, 0, 0.0),
             sprocket("sprocket", 18, -0.460_544_624_366, 1, 0.12),
         ],
-        guides: Vec::new(),
-        tensioners: Vec::new(),
         shafts: vec![Shaft::of_one(driver), Shaft::of_one(driven)],
-        couplings: Vec::new(),
-        gears: Vec::new(),
         settle: true,
         gravity: Vector::new(0.0, -9.81),
-        oil: None,
-        tunable: Vec::new(),
+        ..pieces::alone(vec![around(chain, &[0, 1], 60.0)])
     }
 }
 
 fn links(joint: Joint, rollers: RollerModel) -> ChainModel {
-    let body = |mass: f64, inertia: f64| LinkBody {
-        mass,
-        inertia,
-        centre: Vector::zeros(),
-    };
     ChainModel::Rigid(RigidLinks {
         inner: body(3.01e-3, 1.33e-7),
         outer: body(3.71e-3, 1.6e-7),
@@ -228,7 +175,7 @@ struct Start {
 
 impl Start {
     fn of(parts: Parts) -> Self {
-        let Assembled { system, q, v, .. } = Drive::new(parts).unwrap().assemble().unwrap();
+        let Assembled { system, q, v, .. } = assembled(parts);
         let (record, a, _) = evaluated(&system, at(0.0, &q, &v));
         Self {
             system,
@@ -271,7 +218,7 @@ fn pretension_is_met() {
         if let Rotation::Prescribed(motion) = &mut parts.shafts[0].rotation {
             *motion = Motion::Held;
         }
-        let assembled = Drive::new(parts).unwrap().assemble().unwrap();
+        let assembled = assembled(parts);
         let (system, q) = (assembled.system, assembled.q);
         let still = vec![0.0; q.len()];
         let at = at(0.0, &q, &still);
@@ -300,7 +247,7 @@ fn lanes_and_scalar_contacts_agree() {
         sprocket.flank = Some(flank);
     }
     let law = parts.sprockets[0].surface.law;
-    let assembled = Drive::new(parts).unwrap().assemble().unwrap();
+    let assembled = assembled(parts);
     let (system, still) = (assembled.system, vec![0.0; assembled.q.len()]);
     let mut shares = [0; 3];
     // Shaking the rollers brings them onto the flanks.
@@ -348,7 +295,7 @@ fn lanes_of_any_width_agree() {
             width: 4e-4,
         });
     }
-    let assembled = Drive::new(parts).unwrap().assemble().unwrap();
+    let assembled = assembled(parts);
     let system = assembled.system;
     let mut narrow = system.clone();
     narrow.compute_on(Registers::of(InstructionSet::Baseline).unwrap());

@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State};
+use chaindrive_integrate::{Method, SecondOrderSystem, State};
 use chaindrive_mechanics::{
-    Argument, Assembled, Drive, Flow, Observation, Order, Rotation, StartSpeed, System, Table,
-    Torque,
+    Argument, Assembled, Drive, Flow, Observation, Order, Rotation, StartSpeed, Table, Torque,
 };
 
-use crate::several_chains::{EVEN, assembled, chain, driven, pair, parts};
+use crate::pieces::{assembled, observed};
+use crate::several_chains::{EVEN, chain, driven, pair, parts};
 
 /// A table over two turns, as it is given.
 const TABLE: [(f64, f64); 5] = [
@@ -55,18 +55,6 @@ fn written_out(angle: f64) -> [f64; 2] {
     let table = m0 + (m1 - m0) * (within - a0) / (a1 - a0);
     let load = -2.0 + 0.5 * (1.5 * angle).sin() + 0.3 * (8.0 * angle - 1.0).sin() + table;
     [0.4 * (12.0 * angle + 0.3).sin(), load]
-}
-
-fn observed(system: &System, state: &State, flows: &[f64]) -> Observation {
-    let mut out = Observation::default();
-    let at = Moment {
-        t: state.t,
-        q: &state.q,
-        v: &state.v,
-        z: &[],
-    };
-    system.observe(at, flows, &mut system.new_record(), &mut out);
-    out
 }
 
 /// P = M(θ of the shaft that is followed) ω of the shaft that the torque acts on, and every joule is accounted for.

@@ -10,6 +10,7 @@ mod marine;
 mod marine_statics;
 mod modes_of_links;
 mod oil;
+mod pieces;
 mod plucked;
 mod points;
 mod several_chains;

@@ -1,8 +1,8 @@
 //! Static states of the marine drive against an independent Newton solution.
 
 use crate::marine;
+use crate::pieces::linear;
 
-use chaindrive_contact::{Dissipation, Elastic, Law, elastic::Power};
 use chaindrive_mechanics::Drive;
 
 /// The span means and extremes, from an independent energy minimisation with the same linear
@@ -31,12 +31,7 @@ const STATES: [(&str, [[f64; 2]; 4]); 3] = [
 
 #[test]
 fn span_tensions_match_the_reference_states() {
-    let law = Law {
-        series: None,
-        elastic: Elastic::Power(Power::linear(5e9)),
-        dissipation: Dissipation::None,
-        onset_floor: 0.0,
-    };
+    let law = linear(5e9);
     let drive = Drive::new(marine::parts(law)).expect("the marine drive is valid");
     let assembled = drive.assemble().expect("the marine drive assembles");
     let fitting = assembled.fittings[0].clone().expect("it has a route");

@@ -1,13 +1,14 @@
 //! Rigid links about their settled state, against closed forms; how they are laid, and what stops them.
 
+use crate::pieces;
+use crate::pieces::{assembled, body, laid, linear, seen, smooth};
+
 use std::f64::consts::{PI, TAU};
 
-use chaindrive_contact::{Dissipation, Elastic, Friction, Law, elastic::Power};
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State};
+use chaindrive_integrate::{Method, State};
 use chaindrive_mechanics::{
-    Assembled, Chain, ChainModel, Clearance, Drive, End, Ends, Joint, Layout, LinkBody,
-    Observation, Parts, PlacedChain, RigidLinks, RollerModel, Strength, Surface,
+    Assembled, ChainModel, Clearance, End, Ends, Joint, Observation, Parts, RigidLinks, RollerModel,
 };
 
 const PITCH: f64 = 0.0127;
@@ -18,11 +19,7 @@ const CLEARANCE: f64 = 1e-6;
 
 /// Links of mass m, with the inertia of two halves of it at the joints.
 fn links(joint: Joint, inertia: f64) -> ChainModel {
-    let body = LinkBody {
-        mass: MASS,
-        inertia,
-        centre: Vector::zeros(),
-    };
+    let body = body(MASS, inertia);
     ChainModel::Rigid(RigidLinks {
         inner: body,
         outer: body,
@@ -36,16 +33,7 @@ fn clearance() -> Joint {
     Joint::Clearance(Clearance {
         pin_radius: 2e-3 - CLEARANCE,
         bore_radius: 2e-3,
-        surface: Surface {
-            law: Law {
-                series: None,
-                elastic: Elastic::Power(Power::linear(STIFFNESS)),
-                dissipation: Dissipation::None,
-                onset_floor: 0.01,
-            },
-            friction: Friction::None,
-            film: None,
-        },
+        surface: smooth(linear(STIFFNESS)),
     })
 }
 
@@ -59,47 +47,16 @@ fn alone(
 ) -> Parts {
     let rollers = positions.len();
     let count = rollers - usize::from(ends != Ends::Closed);
-    let mut masses = vec![MASS; rollers];
-    if ends != Ends::Closed {
-        masses[0] *= 0.5;
-        masses[rollers - 1] *= 0.5;
+    let of = [PITCH, MASS, STIFFNESS];
+    let mut chain = pieces::links(count, of, [7.75e-3, 9.6e-3], ends, model);
+    if chain.ends != Ends::Closed {
+        chain.masses[0] *= 0.5;
+        chain.masses[rollers - 1] *= 0.5;
     }
-    let chain = Chain {
-        pitch: PITCH,
-        lengths: vec![PITCH; count],
-        stiffness: vec![STIFFNESS; count],
-        damping: vec![0.0; count],
-        masses,
-        roller_diameter: 7.75e-3,
-        roller_deviations: Vec::new(),
-        plate_height: 9.6e-3,
-        strength: Strength::default(),
-        articulation: None,
-        drag: 0.0,
-        ends,
-        model,
-    };
     Parts {
-        chains: vec![PlacedChain {
-            name: None,
-            chain,
-            layout: Layout::Points {
-                positions,
-                velocities,
-            },
-            sprockets: Vec::new(),
-            guides: Vec::new(),
-        }],
-        sprockets: Vec::new(),
-        guides: Vec::new(),
-        tensioners: Vec::new(),
-        shafts: Vec::new(),
-        couplings: Vec::new(),
-        gears: Vec::new(),
         settle: true,
         gravity,
-        oil: None,
-        tunable: Vec::new(),
+        ..pieces::alone(vec![laid(chain, positions, velocities)])
     }
 }
 
@@ -116,27 +73,6 @@ fn strand(
         .collect();
     let still = vec![Vector::zeros(); count + 1];
     alone(model, Ends::Open(ends), positions, still, gravity)
-}
-
-fn assembled(parts: Parts) -> Assembled {
-    Drive::new(parts)
-        .unwrap_or_else(|problems| panic!("{problems:?}"))
-        .assemble()
-        .unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn observed(assembled: &Assembled) -> Observation {
-    let mut out = Observation::default();
-    let system = &assembled.system;
-    let at = Moment {
-        t: 0.0,
-        q: &assembled.q,
-        v: &assembled.v,
-        z: &[],
-    };
-    let flows = vec![0.0; system.quadratures()];
-    system.observe(at, &flows, &mut system.new_record(), &mut out);
-    out
 }
 
 /// A taut strand that is free to swing at its pulled end, whatever it is made of.
@@ -286,7 +222,7 @@ fn spinning(joint: Joint, stretched: f64) -> (Observation, f64) {
     let mut parts = alone(bars, Ends::Closed, places, velocities, Vector::zeros());
     parts.settle = false;
     parts.chains[0].chain.stiffness.fill(LAID);
-    let seen = observed(&assembled(parts));
+    let seen = seen(&assembled(parts));
     let half = PI / RING as f64;
     let place = Vector::new(seen.roller_x[0], seen.roller_y[0]);
     let speed = Vector::new(seen.roller_vx[0], seen.roller_vy[0]).norm() / place.norm();

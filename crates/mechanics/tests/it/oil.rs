@@ -8,7 +8,9 @@ use chaindrive_mechanics::{
     Assembled, Carrier, Layout, Observation, Parts, Push, Support, System, Tensioner,
 };
 
-use crate::several_chains::{EVEN, assembled, chain, driven, pair, parts, with_play};
+use crate::pieces;
+use crate::pieces::assembled;
+use crate::several_chains::{EVEN, chain, driven, pair, parts, with_play};
 
 /// Forty links around two sprockets, the second on a slide that oil presses outwards.
 fn tensioned(column: Option<OilColumn>) -> Parts {
@@ -48,15 +50,7 @@ const OIL: OilColumn = OilColumn {
 };
 
 fn observed(system: &System, state: &State) -> Observation {
-    let mut out = Observation::default();
-    let at = Moment {
-        t: state.t,
-        q: &state.q,
-        v: &state.v,
-        z: &state.z,
-    };
-    system.observe(at, &state.quadratures, &mut system.new_record(), &mut out);
-    out
+    pieces::observed(system, state, &state.quadratures)
 }
 
 /// Statics knows nothing of the oil but its supply; the state begins settled there.

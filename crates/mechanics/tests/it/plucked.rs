@@ -1,18 +1,18 @@
 //! A plucked span of every chain model: what friction and damping in its joints take from a swing, and the ledger of each cycle.
 #![allow(clippy::print_stdout, reason = "measured losses are worth a look")]
 
+use crate::pieces::{alone, assembled, body, laid, linear, links, smooth};
+
 use std::f64::consts::{PI, TAU};
 
 use chaindrive_contact::dissipation::Exact;
-use chaindrive_contact::elastic::Power;
 use chaindrive_contact::friction::SpringSlider;
-use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
+use chaindrive_contact::{Dissipation, Friction, Law};
 use chaindrive_geometry::{ArcSpline, Point, Segment, Vector};
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State};
 use chaindrive_mechanics::{
-    Articulation, Assembled, Chain, ChainModel, Clearance, Drive, End, Ends, Energy, Flow, Guide,
-    GuideSupport, Harmonic, Joint, Layout, LinkBody, Motion, Observation, Parts, Place,
-    PlacedChain, RigidLinks, RollerModel, Strength, Surface, Touches,
+    Articulation, Assembled, ChainModel, Clearance, End, Ends, Energy, Flow, Guide, GuideSupport,
+    Harmonic, Joint, Motion, Observation, Place, RigidLinks, RollerModel, Surface, Touches,
 };
 
 /// A chain of a marine engine, 56B: pitch \[m\], mass of a link \[kg\], radius of a roller \[m\].
@@ -44,25 +44,19 @@ struct Span {
 }
 
 fn surface(dissipation: Dissipation, friction: Friction) -> Surface {
+    let law = Law {
+        dissipation,
+        ..linear(STIFFNESS)
+    };
     Surface {
-        law: Law {
-            elastic: Elastic::Power(Power::linear(STIFFNESS)),
-            series: None,
-            dissipation,
-            onset_floor: 0.01,
-        },
         friction,
-        film: None,
+        ..smooth(law)
     }
 }
 
 /// Rigid links of the chain.
 fn rigid(joint: Joint) -> ChainModel {
-    let body = LinkBody {
-        mass: MASS,
-        inertia: MASS * PITCH * PITCH / 10.0,
-        centre: Vector::zeros(),
-    };
+    let body = body(MASS, MASS * PITCH * PITCH / 10.0);
     ChainModel::Rigid(RigidLinks {
         inner: body,
         outer: body,
@@ -129,52 +123,19 @@ impl Span {
             let along = (self.spacing().powi(2) - (to - from.y).powi(2)).sqrt();
             positions.push(Point::new(from.x + along, to));
         }
-        let mut masses = vec![MASS; n + 1];
+        let of = [PITCH, MASS, STIFFNESS];
+        let mut chain = links(n, of, [2.0 * ROLLER, 0.08], ends, self.model.clone());
         for end in [0, n] {
-            masses[end] *= 0.5;
+            chain.masses[end] *= 0.5;
         }
-        let chain = Chain {
-            pitch: PITCH,
-            lengths: vec![PITCH; n],
-            stiffness: vec![STIFFNESS; n],
-            damping: vec![0.0; n],
-            masses,
-            roller_diameter: 2.0 * ROLLER,
-            roller_deviations: Vec::new(),
-            plate_height: 0.08,
-            strength: Strength::default(),
-            articulation: self.articulation,
-            drag: self.drag,
-            ends,
-            model: self.model.clone(),
-        };
+        chain.articulation = self.articulation;
+        chain.drag = self.drag;
         let guides: Vec<Guide> = [0, n].iter().flat_map(|&i| around(&positions[i])).collect();
-        let parts = Parts {
-            chains: vec![PlacedChain {
-                name: None,
-                chain,
-                layout: Layout::Points {
-                    velocities: vec![Vector::zeros(); n + 1],
-                    positions,
-                },
-                sprockets: Vec::new(),
-                guides: (0..guides.len()).collect(),
-            }],
-            sprockets: Vec::new(),
-            guides,
-            tensioners: Vec::new(),
-            shafts: Vec::new(),
-            couplings: Vec::new(),
-            gears: Vec::new(),
-            settle: false,
-            gravity: Vector::zeros(),
-            oil: None,
-            tunable: Vec::new(),
-        };
-        Drive::new(parts)
-            .unwrap_or_else(|problems| panic!("{problems:?}"))
-            .assemble()
-            .unwrap_or_else(|error| panic!("{error}"))
+        let still = vec![Vector::zeros(); n + 1];
+        let mut parts = alone(vec![laid(chain, positions, still)]);
+        parts.chains[0].guides = (0..guides.len()).collect();
+        parts.guides = guides;
+        assembled(parts)
     }
 
     /// Amplitude of the first mode \[m\], link for link: the middles of links stand between the rollers.

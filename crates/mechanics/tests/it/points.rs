@@ -1,14 +1,16 @@
 //! Roller, bush and pin of particle chains as points of their own.
 
+use crate::pieces;
+use crate::pieces::{alone, body, laid, observed};
+
 use chaindrive_contact::dissipation::Exact;
 use chaindrive_contact::elastic::{CylinderLaw, Cylinders, Johnson};
 use chaindrive_contact::{Dissipation, Elastic, Friction, Law};
-use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
+use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Weights};
 use chaindrive_mechanics::{
-    Assembled, Chain, ChainModel, Clearance, Drive, Ends, FreeRoller, Joint, Layout, LinkBody,
-    Motion, Observation, Parts, PlacedChain, PointJoints, RigidLinks, RollerModel, Rotation, Shaft,
-    Sprocket, Strength, Support, Surface, System, Tolerance,
+    Assembled, Chain, ChainModel, Clearance, Ends, FreeRoller, Joint, Motion, PointJoints,
+    RigidLinks, RollerModel, Rotation, Shaft, Sprocket, Surface, System,
 };
 
 /// A chain 56B-1 of the catalogue, and joints with next to no play.
@@ -80,11 +82,6 @@ fn points(play: f64) -> ChainModel {
 
 /// Rigid links with all of it behind their pins.
 fn links(play: f64) -> ChainModel {
-    let body = |mass: f64, inertia: f64| LinkBody {
-        mass,
-        inertia,
-        centre: Vector::zeros(),
-    };
     ChainModel::Rigid(RigidLinks {
         inner: body(INNER, 0.005_423),
         outer: body(OUTER, 0.007_835),
@@ -95,21 +92,8 @@ fn links(play: f64) -> ChainModel {
 }
 
 fn chain(model: ChainModel, links: usize) -> Chain {
-    Chain {
-        pitch: PITCH,
-        lengths: vec![PITCH; links],
-        stiffness: vec![STIFFNESS; links],
-        damping: vec![0.0; links],
-        masses: vec![ROLLER + 0.5 * (INNER + OUTER); links],
-        roller_diameter: ROLLER_DIAMETER,
-        roller_deviations: Vec::new(),
-        plate_height: 77.8e-3,
-        articulation: None,
-        strength: Strength::default(),
-        drag: 0.0,
-        ends: Ends::Closed,
-        model,
-    }
+    let of = [PITCH, ROLLER + 0.5 * (INNER + OUTER), STIFFNESS];
+    pieces::links(links, of, [ROLLER_DIAMETER, 77.8e-3], Ends::Closed, model)
 }
 
 fn assembled(
@@ -119,74 +103,22 @@ fn assembled(
     sprockets: Vec<Sprocket>,
 ) -> Assembled {
     let count = sprockets.len();
-    let parts = Parts {
-        chains: vec![PlacedChain {
-            name: None,
-            chain,
-            layout: Layout::Points {
-                positions,
-                velocities,
-            },
-            sprockets: (0..count).collect(),
-            guides: Vec::new(),
-        }],
-        sprockets,
-        guides: Vec::new(),
-        tensioners: Vec::new(),
-        shafts: vec![Shaft::of_one(Rotation::Prescribed(Motion::Held)); count],
-        couplings: Vec::new(),
-        gears: Vec::new(),
-        settle: false,
-        gravity: Vector::zeros(),
-        oil: None,
-        tunable: Vec::new(),
-    };
-    let drive = Drive::new(parts).expect("the parts are valid");
-    drive.assemble().expect("nothing has to close")
-}
-
-fn observed(system: &System, state: &State, flows: &[f64]) -> Observation {
-    let mut out = Observation::default();
-    let at = Moment {
-        t: state.t,
-        q: &state.q,
-        v: &state.v,
-        z: &[],
-    };
-    system.observe(at, flows, &mut system.new_record(), &mut out);
-    out
+    let mut parts = alone(vec![laid(chain, positions, velocities)]);
+    parts.chains[0].sprockets = (0..count).collect();
+    parts.sprockets = sprockets;
+    parts.shafts = vec![Shaft::of_one(Rotation::Prescribed(Motion::Held)); count];
+    pieces::assembled(parts)
 }
 
 /// A ring of four links, flat as a leaf, that meets a gap of a sprocket with one joint.
 fn leaf(model: ChainModel, speed: f64) -> Assembled {
-    let form = ToothForm::Iso606 {
-        gap: 0.5,
-        tip: Tip::Mid,
-        seat: Seat::Bottom,
-    };
-    let gap = ToothGap::new(48, PITCH, ROLLER_DIAMETER, &form).expect("the gap can be cut");
     let near = 0.5 * PITCH / (std::f64::consts::PI / 48.0).sin() + 0.2e-3;
     let (s, c) = 20_f64.to_radians().sin_cos();
     let positions = [(0.0, 0.0), (s, c), (2.0 * s, 0.0), (s, -c)];
     let positions = positions.map(|(x, y)| Point::new(near + PITCH * x, PITCH * y));
     let seat = Johnson::flat(0.5 * ROLLER_DIAMETER, 50e-3, MODULUS);
-    let sprocket = Sprocket {
-        name: "still".into(),
-        gap,
-        side: Side::Left,
-        centre: Point::origin(),
-        shaft: 0,
-        support: Support::Fixed,
-        inertia: 0.0,
-        mass: 1.0,
-        surface: steel(Elastic::Johnson(seat), 0.8, None),
-        stack: None,
-        flank: None,
-        gap_angle: 0.0,
-        tolerance: Tolerance::default(),
-        lateral: 0.0,
-        loss: chaindrive_mechanics::ShaftLoss::default(),
-    };
+    let surface = steel(Elastic::Johnson(seat), 0.8, None);
+    let sprocket = pieces::sprocket("still", 48, [PITCH, ROLLER_DIAMETER], [0.0; 2], surface);
     let velocities = vec![Vector::new(-speed, 0.0); 4];
     assembled(
         chain(model, 4),

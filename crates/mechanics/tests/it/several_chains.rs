@@ -1,14 +1,15 @@
 //! Several chains in one drive: apart, on one shaft, and joined by a shaft that twists.
 
+use crate::pieces;
+use crate::pieces::{around, assembled, body, linear, observed, seen, smooth};
+
 use chaindrive_contact::dissipation::Viscous;
-use chaindrive_contact::{Dissipation, Elastic, Friction, Law, elastic::Power};
-use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
+use chaindrive_contact::{Dissipation, Law};
+use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Weights};
 use chaindrive_mechanics::{
-    Adjust, Assembled, Chain, ChainModel, Clearance, Coupling, Drive, Ends, Fit, GearPair, Joint,
-    Layout, LinkBody, Motion, Observation, Parts, PlacedChain, PretensionAt, RigidLinks,
-    RollerModel, Rotation, Shaft, SpanStart, Sprocket, StartSpeed, Stop, Strength, Support,
-    Surface, System, Tighten, Tolerance, Torque,
+    Assembled, ChainModel, Clearance, Coupling, Ends, GearPair, Joint, Motion, Observation, Parts,
+    PlacedChain, RigidLinks, RollerModel, Rotation, Shaft, Sprocket, StartSpeed, System, Torque,
 };
 
 const PITCH: f64 = 0.0127;
@@ -18,76 +19,25 @@ const ROLLER: f64 = 7.75e-3;
 type Turning = (Sprocket, Rotation);
 
 fn sprocket(name: &str, teeth: u32, centre: [f64; 2], rotation: Rotation) -> Turning {
-    let form = ToothForm::Iso606 {
-        gap: 0.5,
-        tip: Tip::Mid,
-        seat: Seat::Bottom,
-    };
     let sprocket = Sprocket {
-        name: name.into(),
-        gap: ToothGap::new(teeth, PITCH, ROLLER, &form).expect("the form fits the chain"),
-        side: Side::Left,
-        centre: Point::new(centre[0], centre[1]),
-        shaft: 0,
-        support: Support::Fixed,
         inertia: 2e-3,
-        mass: 1.0,
-        surface: Surface {
-            law: Law {
-                series: None,
-                elastic: Elastic::Power(Power::linear(5e7)),
-                dissipation: Dissipation::None,
-                onset_floor: 0.01,
-            },
-            friction: Friction::None,
-            film: None,
-        },
-        stack: None,
-        flank: None,
-        gap_angle: 0.0,
-        tolerance: Tolerance::default(),
-        lateral: 0.0,
-        loss: chaindrive_mechanics::ShaftLoss::default(),
+        ..pieces::sprocket(name, teeth, [PITCH, ROLLER], centre, smooth(linear(5e7)))
     };
     (sprocket, rotation)
 }
 
 /// A chain around sprockets `stops`, `links` long, with a tension of 60 N as laid.
 pub(crate) fn chain(links: usize, stops: [usize; 2]) -> PlacedChain {
-    PlacedChain {
-        name: None,
-        chain: Chain {
-            pitch: PITCH,
-            lengths: vec![PITCH; links],
-            stiffness: vec![20e6; links],
-            damping: vec![20.0; links],
-            masses: vec![3.81e-3; links],
-            roller_diameter: ROLLER,
-            roller_deviations: Vec::new(),
-            plate_height: 9.6e-3,
-            strength: Strength::default(),
-            articulation: None,
-            drag: 0.0,
-            ends: Ends::Closed,
-            model: ChainModel::Particles,
-        },
-        layout: Layout::Route {
-            stops: stops.map(Stop::Sprocket).to_vec(),
-            phase: 0.5,
-            start: SpanStart::Polygon,
-            fit: Fit {
-                growth: 0.0,
-                sag: None,
-                slack: None,
-                adjust: Adjust::Nothing,
-                pretension: 60.0,
-                tighten: Tighten::RestLength,
-                at: PretensionAt::Phase,
-            },
-        },
-        sprockets: stops.to_vec(),
-        guides: Vec::new(),
-    }
+    let of = [PITCH, 3.81e-3, 20e6];
+    let mut chain = pieces::links(
+        links,
+        of,
+        [ROLLER, 9.6e-3],
+        Ends::Closed,
+        ChainModel::Particles,
+    );
+    chain.damping.fill(20.0);
+    around(chain, &stops, 60.0)
 }
 
 fn free(load: f64) -> Rotation {
@@ -127,42 +77,16 @@ pub(crate) fn parts(chains: Vec<PlacedChain>, turning: Vec<Turning>) -> Parts {
         shafts.push(Shaft::of_one(rotation));
     }
     Parts {
-        chains,
         sprockets,
-        guides: Vec::new(),
-        tensioners: Vec::new(),
         shafts,
-        couplings: Vec::new(),
-        gears: Vec::new(),
         settle: true,
         gravity: Vector::new(0.0, -9.81),
-        oil: None,
-        tunable: Vec::new(),
+        ..pieces::alone(chains)
     }
 }
 
 /// Equal sprockets of 20 teeth at ten pitches: forty links.
 pub(crate) const EVEN: f64 = 10.0 * PITCH;
-
-pub(crate) fn assembled(parts: Parts) -> Assembled {
-    Drive::new(parts)
-        .unwrap_or_else(|problems| panic!("{problems:?}"))
-        .assemble()
-        .unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn observed(system: &System, state: &State) -> Observation {
-    let mut out = Observation::default();
-    let at = Moment {
-        t: state.t,
-        q: &state.q,
-        v: &state.v,
-        z: &[],
-    };
-    let flows = vec![0.0; system.quadratures()];
-    system.observe(at, &flows, &mut system.new_record(), &mut out);
-    out
-}
 
 /// Runs at a fixed step and returns what is seen at the end.
 fn run(assembled: Assembled, step: f64, steps: usize) -> Observation {
@@ -178,7 +102,7 @@ fn run(assembled: Assembled, step: f64, steps: usize) -> Observation {
             .advance(&mut system, &mut state)
             .expect("the step is short enough");
     }
-    observed(&system, &state)
+    observed(&system, &state, &vec![0.0; system.quadratures()])
 }
 
 /// Chains that nothing joins move, and pull, as each would in a drive of its own: to the last bit.
@@ -318,10 +242,7 @@ fn a_shaft_carries_sprockets_of_two_chains() {
                 .all(|statics| statics.residual < 1e-6)
         );
         // All sprockets set off together.
-        let start = observed(
-            &assembled.system,
-            &State::new(0.0, assembled.q.clone(), assembled.v.clone()),
-        );
+        let start = seen(&assembled);
         let speeds = [30.0, 30.0, 30.0 * ratio, 30.0 * ratio];
         for (found, speed) in start.sprocket_speed.iter().zip(speeds) {
             assert!((found / speed - 1.0).abs() < 1e-9, "{found}, not {speed}");
@@ -349,23 +270,12 @@ fn a_shaft_carries_sprockets_of_two_chains() {
         let mut stepper = Method::Verlet { step }
             .start(&mut system, &mut state)
             .unwrap();
-        let energy = |system: &System, state: &State, flows: &[f64]| {
-            let mut out = Observation::default();
-            let at = Moment {
-                t: state.t,
-                q: &state.q,
-                v: &state.v,
-                z: &[],
-            };
-            system.observe(at, flows, &mut system.new_record(), &mut out);
-            out
-        };
-        let first = energy(&system, &state, &flows).energy;
+        let first = observed(&system, &state, &flows).energy;
         for _ in 0..20_000 {
             stepper.advance(&mut system, &mut state).unwrap();
         }
         state.quadratures_at(state.t, &mut flows);
-        let last = energy(&system, &state, &flows);
+        let last = observed(&system, &state, &flows);
         assert!((last.sprocket_angle[2] - ratio * last.sprocket_angle[1]).abs() < 1e-12);
         let residual = last.energy.residual(&first);
         let moved = last.energy.kinetic() + last.energy.stored().abs();
@@ -375,10 +285,9 @@ fn a_shaft_carries_sprockets_of_two_chains() {
 
 /// Pins with play in their bushes that lose energy as they close.
 pub(crate) fn with_play(placed: &mut PlacedChain) {
-    let body = |mass: f64, inertia: f64| LinkBody {
-        mass,
-        inertia,
-        centre: Vector::zeros(),
+    let law = Law {
+        dissipation: Dissipation::Viscous(Viscous { damping: 500.0 }),
+        ..linear(2e8)
     };
     placed.chain.model = ChainModel::Rigid(RigidLinks {
         inner: body(3.01e-3, 1.33e-7),
@@ -387,16 +296,7 @@ pub(crate) fn with_play(placed: &mut PlacedChain) {
         joint: Joint::Clearance(Clearance {
             pin_radius: 2.045e-3,
             bore_radius: 2.07e-3,
-            surface: Surface {
-                law: Law {
-                    series: None,
-                    elastic: Elastic::Power(Power::linear(2e8)),
-                    dissipation: Dissipation::Viscous(Viscous { damping: 500.0 }),
-                    onset_floor: 0.01,
-                },
-                friction: Friction::None,
-                film: None,
-            },
+            surface: smooth(law),
         }),
         rollers: RollerModel::Lumped { mass: 0.453e-3 },
     });

@@ -11,7 +11,8 @@ use chaindrive_mechanics::{
     Rotation, StartSpeed, Strand,
 };
 
-use crate::several_chains::{EVEN, assembled, chain, driven, pair, parts};
+use crate::pieces::{assembled, seen};
+use crate::several_chains::{EVEN, chain, driven, pair, parts};
 
 const PITCH: f64 = 0.0127;
 
@@ -58,21 +59,6 @@ fn straight(
         settle,
         ..parts(vec![placed], Vec::new())
     }
-}
-
-fn seen(assembled: &Assembled) -> Observation {
-    let mut out = Observation::default();
-    let system = &assembled.system;
-    let state = assembled.state();
-    let at = Moment {
-        t: state.t,
-        q: &state.q,
-        v: &state.v,
-        z: &[],
-    };
-    let flows = vec![0.0; system.quadratures()];
-    system.observe(at, &flows, &mut system.new_record(), &mut out);
-    out
 }
 
 /// Within 1e-9 of the load of the drive, a kilonewton.
