@@ -2,9 +2,10 @@
 
 use std::f64::consts::SQRT_2;
 
-use chaindrive_quantities::ParameterError;
-
-use crate::error::{require, require_positive};
+use chaindrive_quantities::{
+    JsonSchema, Length, ParameterError, PressureCoefficient, Ratio, Time, Viscosity, check,
+};
+use serde::{Deserialize, Serialize};
 
 /// A film between two cylinders, one in the other or beside a plane, that drains under force.
 ///
@@ -15,7 +16,8 @@ use crate::error::{require, require_positive};
 /// F = λ L ∫ p dx
 /// ```
 ///
-/// The law is the speed v of the film's thinning under a force. λ is the share of the force beside flow out of the ends, see
+/// The law is the speed v of the film's thinning under a force. η₀ is the viscosity at the pressure of the air, α its pressure coefficient, b the
+/// half width, L the length, and R the radius of the cylinder beside a plane: r₁ r₂/(r₂ − r₁) of one in the other. λ is the share of the force beside flow out of the ends, see
 /// [`Film::leakage`]. Oil does not pull. From the roughness down metal bears.
 ///
 /// # Range
@@ -24,25 +26,42 @@ use crate::error::{require, require_positive};
 ///
 /// # Source
 /// O. Reynolds, *Phil. Trans. R. Soc.* **177**, 1886, 157–234; C. Barus, *Am. J. Sci.* **45**, 1893, 87–96.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(
+    description = "Film of oil that a roller squeezes out of its seat, a pin out of its bush. An impact begins where surfaces enter the film, and what it\n\
+                   leaves is a result: a restitution or damping beside it is refused."
+)]
 pub struct Film {
-    /// Dynamic viscosity η₀ at the pressure of the air \[Pa s\], positive.
-    pub viscosity: f64,
-    /// Pressure coefficient α of the viscosity \[1/Pa\], zero or positive.
-    pub pressure_coefficient: f64,
-    /// Radius R of the cylinder beside a plane that has the same gap \[m\], positive: r₁ r₂/(r₂ − r₁) of one in the other.
-    pub radius: f64,
-    /// Half of the width b on which there is oil \[m\], positive.
-    pub half_width: f64,
-    /// Length L of the cylinder \[m\], positive.
-    pub length: f64,
-    /// Share λ of the force of one dimension, in (0, 1\]; none: that of the film's thickness.
-    pub leakage_factor: Option<f64>,
-    /// Thickness of the film, above the roughness, that surfaces meet when they come together \[m\], positive.
+    /// Thickness of the film that the surfaces meet when they come together \[m\]. It has been measured by nobody: vary it.
+    #[schemars(with = "Length", extend("exclusiveMinimum" = 0))]
     pub thickness: f64,
-    /// Roughness at which metal bears \[m\], positive.
+    /// Dynamic viscosity \[Pa s\]; absent: that of the `lubricant`.
+    #[schemars(with = "Option<Viscosity>", extend("exclusiveMinimum" = 0))]
+    pub viscosity: f64,
+    /// Pressure coefficient of the viscosity \[1/Pa\], by Barus.
+    #[schemars(with = "Option<PressureCoefficient>", extend("minimum" = 0))]
+    pub pressure_coefficient: f64,
+    /// Radius of the cylinder beside a plane that has the same gap \[m\]; absent: from roller and seat, pin and bush; on a guide, that of the
+    /// roller.
+    #[schemars(with = "Option<Length>", extend("exclusiveMinimum" = 0))]
+    pub radius: f64,
+    /// Half of the width on which there is oil \[m\]; absent: that of the hollow of the tooth gap; in a bore, of 120°; on a guide, half of the
+    /// radius, of which a film needs a tenth.
+    #[schemars(with = "Option<Length>", extend("exclusiveMinimum" = 0))]
+    pub half_width: f64,
+    /// Length along the axis \[m\]; absent: that of the roller, or of the joint.
+    #[schemars(with = "Option<Length>", extend("exclusiveMinimum" = 0))]
+    pub length: f64,
+    /// Share of the force that flow out of the ends leaves \[–\]; absent: it follows from the width that bears, and the length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<Ratio>", extend("exclusiveMinimum" = 0, "maximum" = 1))]
+    pub leakage_factor: Option<f64>,
+    /// Roughness, at which metal bears \[m\].
+    #[schemars(with = "Option<Length>", extend("exclusiveMinimum" = 0))]
     pub roughness: f64,
-    /// Time constant with which oil comes back between surfaces that have parted \[s\]; zero: it follows at once.
+    /// Time constant with which oil comes back between surfaces that have parted within the film \[s\]; 0: it follows at once.
+    #[schemars(with = "Option<Time>", extend("minimum" = 0))]
     pub refill_time: f64,
 }
 
@@ -61,27 +80,7 @@ impl Film {
     /// # Errors
     /// Names the first parameter outside its range.
     pub fn check(&self) -> Result<(), ParameterError> {
-        require_positive("viscosity", self.viscosity, "positive [Pa s]")?;
-        let zero_or_more = |name, value: f64, allowed| {
-            require(value >= 0.0 && value.is_finite(), name, value, allowed)
-        };
-        zero_or_more(
-            "pressure_coefficient",
-            self.pressure_coefficient,
-            "zero or positive [1/Pa]",
-        )?;
-        require_positive("radius", self.radius, "positive [m]")?;
-        require_positive("half_width", self.half_width, "positive [m]")?;
-        require_positive("length", self.length, "positive [m]")?;
-        require(
-            self.leakage_factor.is_none_or(|it| it > 0.0 && it <= 1.0),
-            "leakage_factor",
-            self.leakage_factor.unwrap_or(1.0),
-            "in (0, 1]",
-        )?;
-        require_positive("thickness", self.thickness, "positive [m]")?;
-        require_positive("roughness", self.roughness, "positive [m]")?;
-        zero_or_more("refill_time", self.refill_time, "zero or positive [s]")
+        check(self)
     }
 
     /// Share λ of the force of one dimension that is left where oil flows out of the ends of a film of some shape.

@@ -1,6 +1,9 @@
 //! Mineral oil: viscosity and density over temperature, from the grade and the viscosity index.
 
-use chaindrive_quantities::ParameterError;
+use chaindrive_quantities::{
+    Density, JsonSchema, KinematicViscosity, ParameterError, Ratio, Temperature, check,
+};
+use serde::Serialize;
 
 use crate::error::require;
 
@@ -37,8 +40,6 @@ const FORTY: f64 = 313.15;
 const HUNDRED: f64 = 373.15;
 /// Temperature at which the density is stated \[K\].
 const FIFTEEN: f64 = 288.15;
-/// Least and greatest temperature \[K\], −40 °C and 200 °C. *Assumed*: beyond, oils of the trade are solid or burn.
-const TEMPERATURES: [f64; 2] = [233.15, 473.15];
 /// Least kinematic viscosity at 100 °C that has a viscosity index \[mm²/s\].
 const THINNEST: f64 = 2.0;
 /// Greatest one that is looked for \[mm²/s\]: far beyond the thickest grade.
@@ -57,15 +58,20 @@ const THICKEST: f64 = 1e4;
 /// # Source
 /// Viscosity: C. Walther's equation as ASTM D341 has it, for ν > 2 mm²/s. Viscosity index: ISO 2909, ASTM D2270. Density:
 /// ASTM D1250, API MPMS 11.1, constants of lubricating oils.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Lubricant {
     /// Kinematic viscosity at 40 °C \[m²/s\], 2 to 5000 mm²/s.
+    #[schemars(with = "KinematicViscosity", extend("minimum" = 2e-6, "maximum" = 5e-3))]
     pub viscosity_40: f64,
     /// Viscosity index \[–\], 0 to 250.
+    #[schemars(with = "Ratio", extend("minimum" = 0, "maximum" = 250))]
     pub viscosity_index: f64,
     /// Density at 15 °C \[kg/m³\], 700 to 1100.
+    #[schemars(with = "Density", extend("minimum" = 700, "maximum" = 1100))]
     pub density: f64,
     /// Temperature \[K\], 233.15 to 473.15.
+    // From −40 to 200 °C. Assumed: beyond, oils of the trade are solid or burn.
+    #[schemars(with = "Temperature", extend("minimum" = 233.15, "maximum" = 473.15))]
     pub temperature: f64,
 }
 
@@ -87,37 +93,8 @@ impl Lubricant {
     /// Names the first parameter outside its range, or a viscosity index with which the oil would be thinner at 100 °C than the index is
     /// defined for.
     pub fn check(&self) -> Result<(), ParameterError> {
-        let Self {
-            viscosity_40,
-            viscosity_index,
-            density,
-            temperature,
-        } = *self;
-        require(
-            (2e-6..=5e-3).contains(&viscosity_40),
-            "viscosity_40",
-            viscosity_40,
-            "from 2e-6 to 5e-3 [m^2/s]",
-        )?;
-        require(
-            (0.0..=250.0).contains(&viscosity_index),
-            "viscosity_index",
-            viscosity_index,
-            "from 0 to 250",
-        )?;
-        require(
-            (700.0..=1100.0).contains(&density),
-            "density",
-            density,
-            "from 700 to 1100 [kg/m^3]",
-        )?;
-        let [least, most] = TEMPERATURES;
-        require(
-            (least..=most).contains(&temperature),
-            "temperature",
-            temperature,
-            "from 233.15 to 473.15 [K]",
-        )?;
+        check(self)?;
+        let (viscosity_40, viscosity_index) = (self.viscosity_40, self.viscosity_index);
         require(
             viscosity_at_40(THINNEST, viscosity_index) <= viscosity_40 * 1e6,
             "viscosity_40",

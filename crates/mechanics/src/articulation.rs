@@ -1,6 +1,8 @@
 //! Resistance of the links of a chain to turning against each other in their joints.
 
 use chaindrive_contact::Friction;
+use chaindrive_quantities::{JsonSchema, Length, Ratio, check};
+use serde::{Deserialize, Serialize};
 
 use crate::DriveError;
 
@@ -42,19 +44,28 @@ pub struct Articulation {
 /// ```
 ///
 /// The side force F_s passes from the span to the first tooth: where an inner link swings in, its plate rubs on the flank of the tooth, where
-/// an outer link does, on the inner plate before it. Either rubs at a lever h from the pin while the joint turns, and that is by α = 2π/z
+/// an outer link does, on the inner plate before it. Either rubs with the coefficient μ_s at a lever h from the pin while the joint turns, and that is by α = 2π/z
 /// at each end: the work is μ_s F_s h α. Nothing moves out of the plane.
 ///
 /// # Source
 /// J. B. Spicer, C. J. K. Richardson, M. J. Ehrlich, J. R. Bernstein, M. Fukuda and M. Terada, *Hum. Power* **50**, 2000, 3–9: their loss by
 /// offset, with a radius r₀ of the plates for h, and sin γ, which is tan γ to 0.5 % below 5°.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(
+    rename = "Lateral",
+    description = "Plates that rub where the chain runs out of line: between sprockets whose `lateral` places differ."
+)]
 pub struct LateralRub {
-    /// Coefficient of friction μ_s of plates \[–\], not negative.
+    /// Coefficient of friction of plates on teeth and on each other \[–\].
+    #[serde(rename = "friction")]
+    #[schemars(with = "Option<Ratio>", extend("minimum" = 0))]
     pub coefficient: f64,
-    /// Lever h from the pin to where plates rub \[m\], positive.
+    /// Lever from the pin to where they rub \[m\].
+    #[schemars(with = "Option<Length>", extend("exclusiveMinimum" = 0))]
     pub lever: f64,
-    /// Lateral play of the chain on its sprockets \[m\], not negative: an offset within it costs nothing.
+    /// Lateral play of the chain on its sprockets \[m\]: an offset within it costs nothing.
+    #[schemars(with = "Option<Length>", extend("minimum" = 0))]
     pub play: f64,
 }
 
@@ -92,30 +103,8 @@ impl Articulation {
             self.seal,
             "not negative [N m]",
         );
-        if let Some(lateral) = self.lateral {
-            for (path, value, ok, allowed) in [
-                (
-                    "chain.lateral.friction",
-                    lateral.coefficient,
-                    lateral.coefficient >= 0.0,
-                    "not negative",
-                ),
-                (
-                    "chain.lateral.lever",
-                    lateral.lever,
-                    lateral.lever > 0.0,
-                    "positive [m]",
-                ),
-                (
-                    "chain.lateral.play",
-                    lateral.play,
-                    lateral.play >= 0.0,
-                    "not negative [m]",
-                ),
-            ] {
-                need(ok && value.is_finite(), path, value, allowed);
-            }
-        }
+        let lateral = self.lateral.and_then(|it| check(&it).err());
+        problems.extend(lateral.map(|error| DriveError::law("chain.lateral", error)));
         let springs = matches!(
             self.friction,
             Friction::SpringSlider(_) | Friction::Stribeck(_)

@@ -171,7 +171,7 @@ pub use pose::{
     Body, BodyKind, Figure, FigureChain, Instant, MissingChannel, Placement, PlateShape, Pose,
 };
 pub use seam::{ContactEvent, ContactPair, EventKinds, Observation};
-pub use shaft_loss::{Bearing, BearingLaw, ShaftDrag, ShaftLoss, SkfBearing};
+pub use shaft_loss::{Bearing, BearingFeed, Series, ShaftDrag, ShaftLoss, SkfBearing};
 pub use stack::{
     Beam, BeamEnds, JointMasses, StackTerm, StrikingMass, ToothStack, dry_blow, rim_compliance,
     wall_compliance,

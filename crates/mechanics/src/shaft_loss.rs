@@ -2,6 +2,12 @@
 
 use std::f64::consts::TAU;
 
+use chaindrive_quantities::{
+    AngularSpeed, JsonSchema, KinematicViscosity, Length, ParameterError, Ratio, Torque as Moment,
+    check,
+};
+use serde::{Deserialize, Serialize};
+
 use crate::DriveError;
 
 /// Resistance of a shaft to its rotation, at one place on it.
@@ -20,33 +26,40 @@ pub struct ShaftLoss {
 /// ```
 ///
 /// At 10 ω_c the torque is 99.5 % of M. A shaft at rest holds nothing: it creeps.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bearing {
-    /// Frictional torque M of a turning shaft.
-    pub law: BearingLaw,
-    /// Speed ω_c over which the torque reverses \[rad/s\], positive.
-    pub creep_speed: f64,
-}
-
-/// Frictional torque M of a bearing.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum BearingLaw {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+#[schemars(
+    description = "Friction of the bearings of a shaft. Their torque opposes the rotation, M ω/√(ω² + ω_c²)."
+)]
+pub enum Bearing {
     /// A stated torque.
     Torque {
-        /// Torque M \[N m\], not negative.
+        /// Torque M \[N m\].
+        #[schemars(with = "Moment", extend("minimum" = 0))]
         torque: f64,
+        /// Speed ω_c over which the torque reverses \[rad/s\].
+        #[schemars(with = "Option<AngularSpeed>", extend("exclusiveMinimum" = 0))]
+        creep_speed: f64,
     },
-    /// M = ½ μ F d.
-    ///
-    /// # Source
-    /// SKF, *Rolling bearings*, 2013: an estimate for loads about a tenth of the dynamic rating, good lubrication, normal speeds.
+    /// M = ½ μ F d with the force F of the chain and the weight of the sprocket.
+    // SKF, Rolling bearings, 2013: an estimate for loads about a tenth of the dynamic rating, good lubrication, normal speeds.
     Coefficient {
-        /// Coefficient μ \[–\], 0 to 1: 0.0015 of deep-groove ball bearings, 0.0011 of cylindrical and 0.0018 of spherical roller bearings.
+        /// Coefficient μ \[–\], or "deep-groove", "cylindrical", "spherical": 0.0015, 0.0011, 0.0018 by SKF's catalogue.
+        #[schemars(with = "Ratio", extend(
+            "x-words" = {"deep-groove": 0.0015, "cylindrical": 0.0011, "spherical": 0.0018},
+            "examples" = ["deep-groove"],
+            "minimum" = 0,
+            "maximum" = 1,
+        ))]
         coefficient: f64,
-        /// Bore d \[m\], positive.
+        /// Bore d \[m\].
+        #[schemars(with = "Length", extend("exclusiveMinimum" = 0))]
         diameter: f64,
+        /// Speed ω_c over which the torque reverses \[rad/s\].
+        #[schemars(with = "Option<AngularSpeed>", extend("exclusiveMinimum" = 0))]
+        creep_speed: f64,
     },
-    /// SKF's model for deep-groove ball bearings.
+    /// SKF's model of deep-groove ball bearings under the force of the chain and the weight of the sprocket.
     Skf(SkfBearing),
 }
 
@@ -61,23 +74,61 @@ pub enum BearingLaw {
 ///
 /// # Source
 /// SKF, *Rolling bearings*, 2013, pages 99 to 111.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(inline)]
 pub struct SkfBearing {
-    /// Bore d \[m\], positive.
+    /// Series, such as "62".
+    #[schemars(with = "String")]
+    pub series: Series,
+    /// Bore \[m\].
+    #[schemars(with = "Length", extend("exclusiveMinimum" = 0))]
     pub bore: f64,
-    /// Outside diameter D \[m\], more than the bore.
+    /// Outside diameter \[m\].
+    #[schemars(with = "Length", extend("exclusiveMinimum" = 0))]
     pub outside_diameter: f64,
-    /// Constants R₁ and S₁ of the [series](Self::series), positive.
-    pub constants: [f64; 2],
-    /// Kinematic viscosity ν of the oil, or of the base oil of the grease \[m²/s\], positive.
+    /// Kinematic viscosity of the oil, or of the base oil of the grease \[m²/s\]; absent: that of the `lubricant`.
+    #[schemars(with = "Option<KinematicViscosity>", extend("exclusiveMinimum" = 0))]
     pub viscosity: f64,
-    /// Constant K_rs of replenishment: 3e-8 of an oil bath or jet, 6e-8 of grease or oil and air; not negative.
-    pub replenishment: f64,
-    /// Coefficient μ_bl of boundary lubrication \[–\], 0 to 1.
+    /// Supply of oil; absent: a bath.
+    #[serde(default)]
+    pub feed: BearingFeed,
+    /// Coefficient of boundary lubrication \[–\].
+    #[schemars(with = "Option<Ratio>", extend("minimum" = 0, "maximum" = 1))]
     pub boundary_coefficient: f64,
-    /// Coefficient μ_EHL of a full film \[–\], 0 to 1.
+    /// Coefficient of a full film \[–\].
+    #[schemars(with = "Option<Ratio>", extend("minimum" = 0, "maximum" = 1))]
     pub full_film_coefficient: f64,
+    /// Speed ω_c over which the torque reverses \[rad/s\].
+    #[schemars(with = "Option<AngularSpeed>", extend("exclusiveMinimum" = 0))]
+    pub creep_speed: f64,
 }
+
+/// Supply of oil to a bearing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum BearingFeed {
+    /// A low bath, or a jet.
+    #[default]
+    Bath,
+    /// Grease, or oil with air.
+    Grease,
+}
+
+impl BearingFeed {
+    /// Constant K_rs of replenishment.
+    fn replenishment(self) -> f64 {
+        match self {
+            Self::Bath => 3e-8,
+            Self::Grease => 6e-8,
+        }
+    }
+}
+
+/// A series of deep-groove ball bearings, by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct Series(usize);
 
 /// Constants R₁ and S₁ by series: as a public program has them, not compared with the printed table.
 const SERIES: [(&str, [f64; 2]); 16] = [
@@ -99,29 +150,50 @@ const SERIES: [(&str, [f64; 2]); 16] = [
     ("639", [4.3e-7, 4.75e-3]),
 ];
 
-impl SkfBearing {
-    /// Constants R₁ and S₁ of a series of deep-groove ball bearings, such as `62`; none where it is not known.
-    pub fn series(name: &str) -> Option<[f64; 2]> {
-        let found = SERIES.iter().find(|(known, _)| *known == name);
-        found.map(|(_, constants)| *constants)
+impl Series {
+    /// The series of a name, such as `62`; none where it is not known.
+    pub fn named(name: &str) -> Option<Self> {
+        let found = SERIES.iter().position(|(known, _)| *known == name);
+        found.map(Self)
+    }
+
+    /// Constants R₁ and S₁.
+    fn constants(self) -> [f64; 2] {
+        SERIES[self.0].1
     }
 
     /// Names of the known series.
-    pub fn known_series() -> [&'static str; SERIES.len()] {
+    pub fn names() -> [&'static str; SERIES.len()] {
         SERIES.map(|(name, _)| name)
     }
+}
 
+impl TryFrom<String> for Series {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Self, String> {
+        Self::named(&name).ok_or_else(|| format!("no deep-groove series is called `{name}`"))
+    }
+}
+
+impl From<Series> for String {
+    fn from(series: Series) -> Self {
+        SERIES[series.0].0.to_owned()
+    }
+}
+
+impl SkfBearing {
     /// Torque \[N m\] under a radial force \[N\] at a speed \[rad/s\], not negative.
     fn torque(&self, force: f64, speed: f64) -> f64 {
         let [d, outside] = [self.bore, self.outside_diameter].map(|it| it * 1e3);
         let mean = 0.5 * (d + outside);
         let (n, viscosity) = (speed * 60.0 / TAU, self.viscosity * 1e6);
-        let [rolling, sliding] = self.constants;
+        let [rolling, sliding] = self.series.constants();
         // φ_ish = 1/(1 + 1.84e-9 (n d_m)^1.28 ν^0.64)
         let shear = 1.0 / (1.0 + 1.84e-9 * (n * mean).powf(1.28) * viscosity.powf(0.64));
         // φ_rs = exp(−K_rs ν n (d + D) √(K_z/(2 (D − d))))
         let narrow = (3.1 / (2.0 * (outside - d))).sqrt();
-        let starved = (-self.replenishment * viscosity * n * (d + outside) * narrow).exp();
+        let starved = (-self.feed.replenishment() * viscosity * n * (d + outside) * narrow).exp();
         // M_rr = φ_ish φ_rs R₁ d_m^1.96 F^0.54 (ν n)^0.6
         let by_rolling = rolling * mean.powf(1.96) * force.powf(0.54) * (viscosity * n).powf(0.6);
         // φ = exp(−2.6e-8 (n ν)^1.4 d_m)
@@ -139,39 +211,69 @@ impl SkfBearing {
 /// ```text
 /// T = −M₀ (|ω|/ω₀)ⁿ sgn ω
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(description = "Drag of oil and air on a shaft, M₀ (|ω|/ω₀)ⁿ against the rotation.")]
 pub struct ShaftDrag {
-    /// Torque M₀ \[N m\], not negative.
+    /// Torque M₀ \[N m\].
+    #[schemars(with = "Moment", extend("minimum" = 0))]
     pub torque: f64,
-    /// Speed ω₀ at which it is stated \[rad/s\], positive.
+    /// Speed ω₀ at which it is stated \[rad/s\].
+    #[schemars(with = "AngularSpeed", extend("exclusiveMinimum" = 0))]
     pub speed: f64,
-    /// Exponent n \[–\], 1 to 3.
+    /// Exponent n \[–\].
+    #[schemars(with = "Option<Ratio>", extend("minimum" = 1, "maximum" = 3))]
     pub exponent: f64,
 }
 
-impl BearingLaw {
+impl Bearing {
     /// Frictional torque M \[N m\] under a radial force \[N\] at a speed \[rad/s\], both not negative.
     pub fn torque(&self, force: f64, speed: f64) -> f64 {
         match self {
-            Self::Torque { torque } => *torque,
+            Self::Torque { torque, .. } => *torque,
             // M = ½ μ F d
             Self::Coefficient {
                 coefficient,
                 diameter,
+                ..
             } => 0.5 * coefficient * force * diameter,
             Self::Skf(bearing) => bearing.torque(force, speed),
         }
     }
-}
 
-impl Bearing {
+    /// Speed ω_c over which the torque reverses \[rad/s\].
+    fn creep_speed(&self) -> f64 {
+        match self {
+            Self::Torque { creep_speed, .. } | Self::Coefficient { creep_speed, .. } => {
+                *creep_speed
+            }
+            Self::Skf(bearing) => bearing.creep_speed,
+        }
+    }
+
     /// Torque \[N m\] on a shaft under a radial force \[N\] at a speed \[rad/s\], against the rotation, and its damping −∂T/∂ω at a
     /// held M \[N m s\].
     fn act(&self, force: f64, speed: f64) -> [f64; 2] {
-        let torque = self.law.torque(force, speed.abs());
-        let reach = speed.hypot(self.creep_speed);
-        let share = self.creep_speed / reach;
+        let torque = self.torque(force, speed.abs());
+        let reach = speed.hypot(self.creep_speed());
+        let share = self.creep_speed() / reach;
         [-torque * speed / reach, torque * share * share / reach]
+    }
+
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// Names the first parameter outside its range, or an outside diameter that is no more than the bore.
+    pub fn check(&self) -> Result<(), ParameterError> {
+        check(self)?;
+        match self {
+            Self::Skf(it) if it.outside_diameter <= it.bore => Err(ParameterError {
+                parameter: "outside_diameter".into(),
+                value: it.outside_diameter,
+                allowed: "more than the bore [m]".into(),
+            }),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -209,105 +311,12 @@ impl ShaftLoss {
         }
     }
 
-    /// Names every parameter out of range.
+    /// Names the first parameter out of range of bearing and drag.
     pub(crate) fn problems(&self, place: &str) -> Vec<DriveError> {
-        let mut found = Vec::new();
-        let mut need = |ok: bool, key: &str, value: f64, allowed: &'static str| {
-            found.extend(DriveError::require(ok, &format!("{place}.{key}"), value, allowed).err());
-        };
-        let positive = |value: f64| value > 0.0 && value.is_finite();
-        let not_negative = |value: f64| value >= 0.0 && value.is_finite();
-        let share = |value: f64| (0.0..=1.0).contains(&value);
-        if let Some(Bearing { law, creep_speed }) = self.bearing {
-            let allowed = "positive [rad/s]";
-            need(
-                positive(creep_speed),
-                "bearing.creep_speed",
-                creep_speed,
-                allowed,
-            );
-            match law {
-                BearingLaw::Torque { torque } => {
-                    need(
-                        not_negative(torque),
-                        "bearing.torque",
-                        torque,
-                        "not negative [N m]",
-                    );
-                }
-                BearingLaw::Coefficient {
-                    coefficient: it,
-                    diameter,
-                } => {
-                    need(share(it), "bearing.coefficient", it, "between 0 and 1");
-                    need(
-                        positive(diameter),
-                        "bearing.diameter",
-                        diameter,
-                        "positive [m]",
-                    );
-                }
-                BearingLaw::Skf(it) => {
-                    let [rolling, sliding] = it.constants;
-                    let outside = it.outside_diameter;
-                    let wide = outside > it.bore && outside.is_finite();
-                    let [film, boundary] = [it.full_film_coefficient, it.boundary_coefficient];
-                    need(positive(it.bore), "bearing.bore", it.bore, "positive [m]");
-                    need(
-                        wide,
-                        "bearing.outside_diameter",
-                        outside,
-                        "more than the bore [m]",
-                    );
-                    need(
-                        positive(rolling),
-                        "bearing.constants[0]",
-                        rolling,
-                        "positive",
-                    );
-                    need(
-                        positive(sliding),
-                        "bearing.constants[1]",
-                        sliding,
-                        "positive",
-                    );
-                    let viscosity = it.viscosity;
-                    need(
-                        positive(viscosity),
-                        "bearing.viscosity",
-                        viscosity,
-                        "positive [m²/s]",
-                    );
-                    let supply = it.replenishment;
-                    need(
-                        not_negative(supply),
-                        "bearing.replenishment",
-                        supply,
-                        "not negative",
-                    );
-                    let place = "bearing.boundary_coefficient";
-                    need(share(boundary), place, boundary, "between 0 and 1");
-                    let place = "bearing.full_film_coefficient";
-                    need(share(film), place, film, "between 0 and 1");
-                }
-            }
-        }
-        if let Some(drag) = self.drag {
-            need(
-                not_negative(drag.torque),
-                "drag.torque",
-                drag.torque,
-                "not negative [N m]",
-            );
-            need(
-                positive(drag.speed),
-                "drag.speed",
-                drag.speed,
-                "positive [rad/s]",
-            );
-            let fits = (1.0..=3.0).contains(&drag.exponent);
-            need(fits, "drag.exponent", drag.exponent, "between 1 and 3");
-        }
-        found
+        let bearing = self.bearing.and_then(|it| it.check().err());
+        let drag = self.drag.and_then(|it| check(&it).err());
+        let bearing = bearing.map(|error| DriveError::law(&format!("{place}.bearing"), error));
+        let drag = drag.map(|error| DriveError::law(&format!("{place}.drag"), error));
+        bearing.into_iter().chain(drag).collect()
     }
 }

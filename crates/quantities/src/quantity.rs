@@ -48,6 +48,18 @@ macro_rules! quantities {
                 pub f64,
             );
 
+            impl From<f64> for $type {
+                fn from(value: f64) -> Self {
+                    Self(value)
+                }
+            }
+
+            impl From<$type> for f64 {
+                fn from(quantity: $type) -> Self {
+                    quantity.0
+                }
+            }
+
             impl JsonSchema for $type {
                 fn inline_schema() -> bool {
                     true

@@ -38,41 +38,21 @@ impl Basis {
     }
 }
 
-/// A number that is taken where a scene gives none.
+/// A number, or a member of a family, that is taken where a scene gives none.
 #[derive(Debug)]
-pub(crate) struct Default {
+pub(crate) struct Default<T: 'static = f64> {
     /// Keys of the schema that it is for, as `Type.key`.
     pub(crate) keys: &'static [&'static str],
-    /// Unit, or what it is a multiple of.
+    /// Unit, or what it is a multiple of; none of a member of a family.
     pub(crate) unit: &'static str,
     /// Where it comes from.
     pub(crate) basis: Basis,
     /// Its values, each from a version on, the first version first.
-    values: &'static [(Version, f64)],
-}
-
-impl Default {
-    /// The value in a version.
-    pub(crate) fn value(&self, version: Version) -> f64 {
-        let holds = |(since, _): &&(Version, f64)| *since <= version;
-        let last = self.values.iter().rfind(holds);
-        last.map_or(f64::NAN, |(_, value)| *value)
-    }
-}
-
-/// A member of a family that is taken where a scene names none.
-#[derive(Debug)]
-pub(crate) struct Choice<T: 'static> {
-    /// Keys of the schema that it is for, as `Type.key`.
-    pub(crate) keys: &'static [&'static str],
-    /// Why.
-    pub(crate) basis: Basis,
-    /// The members, each from a version on, the first version first.
     values: &'static [(Version, T)],
 }
 
-impl<T: Copy> Choice<T> {
-    /// The member in a version.
+impl<T: Copy> Default<T> {
+    /// The value in a version.
     pub(crate) fn value(&self, version: Version) -> T {
         let (_, first) = self.values[0];
         let holds = |(since, _): &&(Version, T)| *since <= version;
@@ -81,9 +61,38 @@ impl<T: Copy> Choice<T> {
     }
 }
 
+impl Default {
+    /// So many times a number that has its unit, and the remark about it.
+    pub(crate) fn multiple(&self, version: Version, of: f64) -> (f64, String) {
+        let factor = self.value(version);
+        let remark = format!("{factor} {}, {}", self.unit, self.basis.remark());
+        (factor * of, remark)
+    }
+}
+
+impl<T: Copy + Serialize> Default<T> {
+    /// Writes it into the schema, at all its keys.
+    fn put_into(&self, schema: &mut Json) {
+        let mut told = json!({"value": self.value(Version::default())});
+        if !self.unit.is_empty() {
+            told["unit"] = self.unit.into();
+        }
+        told["basis"] = self.basis.remark().into();
+        for key in self.keys {
+            for property in properties(schema, key) {
+                match property["x-defaults"].as_array_mut() {
+                    Some(list) => list.push(told.clone()),
+                    None => property["x-defaults"] = json!([told]),
+                }
+            }
+        }
+    }
+}
+
 /// How spans set off.
-pub(crate) static SPAN_START: Choice<SpanStart> = Choice {
+pub(crate) static SPAN_START: Default<SpanStart> = Default {
     keys: &["Route.start"],
+    unit: "",
     basis: Assumed(
         "what polygons do across a span at one instant averages to nothing over a tooth",
     ),
@@ -94,8 +103,9 @@ pub(crate) static SPAN_START: Choice<SpanStart> = Choice {
 };
 
 /// Where a chain carries its pretension.
-pub(crate) static PRETENSION_AT: Choice<PretensionAt> = Choice {
+pub(crate) static PRETENSION_AT: Default<PretensionAt> = Default {
     keys: &["Route.pretension_at"],
+    unit: "",
     basis: Assumed("a drive is not another one for where it happens to stand"),
     values: &[
         (Version::V0_1, PretensionAt::Phase),
@@ -104,8 +114,9 @@ pub(crate) static PRETENSION_AT: Choice<PretensionAt> = Choice {
 };
 
 /// Motion before t = 0.
-pub(crate) static RUN_IN: Choice<&str> = Choice {
+pub(crate) static RUN_IN: Default<&str> = Default {
     keys: &["Run.run_in"],
+    unit: "",
     basis: Assumed(
         "whoever simulates a closed chain whose inputs repeat wants its steady motion; others begin as they stand",
     ),
@@ -119,15 +130,17 @@ pub(crate) static RUN_IN: Choice<&str> = Choice {
 };
 
 /// Support of pins in their plates.
-pub(crate) static PIN_ENDS: Choice<BeamEnds> = Choice {
+pub(crate) static PIN_ENDS: Default<BeamEnds> = Default {
     keys: &["Stack.pin_ends"],
+    unit: "",
     basis: Assumed("pressed into plates that are thinner than the pin and turn with it"),
     values: &[(Version::V0_1, BeamEnds::Supported)],
 };
 
 /// How impacts lose energy.
-pub(crate) static DISSIPATION: Choice<Hysteresis> = Choice {
+pub(crate) static DISSIPATION: Default<Hysteresis> = Default {
     keys: &["Contact.dissipation"],
+    unit: "",
     basis: Assumed(
         "delivers the restitution that is asked for, Lankarani and Nikravesh's law of version 0.1 does not",
     ),
@@ -145,7 +158,7 @@ macro_rules! defaults {
             basis: $basis,
             values: &$value,
         };)*
-        /// Every default.
+        /// Every number.
         static ALL: &[&Default] = &[$(&$name),*];
     };
 }
@@ -284,39 +297,13 @@ pub(crate) fn of_keys(
 /// Writes the defaults of the present version into the schema, as `x-defaults`.
 pub(crate) fn put_into(schema: &mut Json) {
     for default in ALL {
-        let told = json!({
-            "value": default.value(Version::default()),
-            "unit": default.unit,
-            "basis": default.basis.remark(),
-        });
-        tell(schema, default.keys, &told);
+        default.put_into(schema);
     }
-    tell_choice(schema, &SPAN_START);
-    tell_choice(schema, &PRETENSION_AT);
-    tell_choice(schema, &DISSIPATION);
-    tell_choice(schema, &PIN_ENDS);
-    tell_choice(schema, &RUN_IN);
-}
-
-fn tell_choice<T: Copy + Serialize>(schema: &mut Json, choice: &Choice<T>) {
-    let told = json!({
-        "value": choice.value(Version::default()),
-        "basis": choice.basis.remark(),
-    });
-    tell(schema, choice.keys, &told);
-}
-
-/// Adds one default to all its keys.
-fn tell(schema: &mut Json, keys: &[&str], told: &Json) {
-    for place in keys {
-        for property in properties(schema, place) {
-            let list = &mut property["x-defaults"];
-            match list.as_array_mut() {
-                Some(list) => list.push(told.clone()),
-                None => *list = json!([told]),
-            }
-        }
-    }
+    SPAN_START.put_into(schema);
+    PRETENSION_AT.put_into(schema);
+    DISSIPATION.put_into(schema);
+    PIN_ENDS.put_into(schema);
+    RUN_IN.put_into(schema);
 }
 
 /// The properties of the schema called `Type.key`, one for every member of a family.

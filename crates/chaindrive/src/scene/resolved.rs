@@ -7,6 +7,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};
 use toml_edit::{DocumentMut, Item};
 
+use super::expected::{Expected, Reading, kind_of};
 use super::path::steps;
 use super::resolve::{self, Assumption};
 use super::schema::{EVERY, STEPPING_KEYS, SceneText, TOLERANCE, UNTIL, Version};
@@ -90,6 +91,7 @@ impl Resolved {
             .map_err(|error| SceneError::new(&scene.name, vec![unreadable(&error)]))?;
         values = json!(content);
         prune(&mut values);
+        in_order(&mut values, format::raw(), &Reading::new(format::raw()));
         if let Json::Object(values) = &values {
             // What stands in the text, and what the types of the schema put in.
             let comments = comments(&scene.text);
@@ -279,6 +281,37 @@ fn prune(value: &mut Json) {
             });
         }
         Json::Array(items) => items.iter_mut().for_each(prune),
+        _ => {}
+    }
+}
+
+/// Brings the keys of tables into the order of the schema.
+fn in_order(value: &mut Json, schema: &Json, reading: &Reading<'_>) {
+    let core = reading.core(schema);
+    let table = match Expected::of(core) {
+        Expected::Kinds(members, _) => {
+            let of_kind = |member: &&Json| kind_of(member) == value["kind"].as_str();
+            members.iter().find(of_kind).unwrap_or(core)
+        }
+        _ => core,
+    };
+    match value {
+        Json::Object(entries) => {
+            let properties = table.get("properties").and_then(Json::as_object);
+            let mut found = std::mem::take(entries);
+            for (key, property) in properties.into_iter().flatten() {
+                if let Some(mut value) = found.shift_remove(key) {
+                    in_order(&mut value, property, reading);
+                    entries.insert(key.clone(), value);
+                }
+            }
+            entries.append(&mut found);
+        }
+        Json::Array(items) => {
+            for item in items {
+                in_order(item, &table["items"], reading);
+            }
+        }
         _ => {}
     }
 }

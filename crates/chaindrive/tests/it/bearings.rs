@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use chaindrive::describe::spans_at_rest;
 use chaindrive::{Observation, Scene};
-use chaindrive_mechanics::{BearingLaw, Flow, SkfBearing};
+use chaindrive_mechanics::{Bearing, BearingFeed, Flow, Series, SkfBearing};
 
 use crate::dynamics::run;
 
@@ -91,15 +91,17 @@ fn bearings_carry_chain_and_weight() {
     let ball = SkfBearing {
         bore: 25e-3,
         outside_diameter: 52e-3,
-        constants: SkfBearing::series("62").unwrap(),
+        series: Series::named("62").unwrap(),
         viscosity: 30e-6,
-        replenishment: 3e-8,
+        feed: BearingFeed::Bath,
         boundary_coefficient: 0.15,
         full_film_coefficient: 0.05,
+        creep_speed: 0.1,
     };
-    let by_half = BearingLaw::Coefficient {
+    let by_half = Bearing::Coefficient {
         coefficient: 0.0015,
         diameter: 30e-3,
+        creep_speed: 0.1,
     };
     for (text, law) in [
         (
@@ -108,7 +110,7 @@ fn bearings_carry_chain_and_weight() {
         ),
         (
             r#"kind = "skf", series = "62", bore = "25 mm", outside_diameter = "52 mm", viscosity = "30 mm^2/s""#,
-            BearingLaw::Skf(ball),
+            Bearing::Skf(ball),
         ),
     ] {
         let keys = format!("mass = \"3 kg\"\nbearing = {{ {text} }}");
@@ -133,14 +135,15 @@ fn bearings_carry_chain_and_weight() {
 /// catalogue.
 #[test]
 fn skf_model_by_hand() {
-    let law = BearingLaw::Skf(SkfBearing {
+    let law = Bearing::Skf(SkfBearing {
         bore: 25e-3,
         outside_diameter: 52e-3,
-        constants: SkfBearing::series("62").unwrap(),
+        series: Series::named("62").unwrap(),
         viscosity: 30e-6,
-        replenishment: 3e-8,
+        feed: BearingFeed::Bath,
         boundary_coefficient: 0.15,
         full_film_coefficient: 0.05,
+        creep_speed: 0.1,
     });
     for (speed, expected) in [
         (0.0, 0.018_753_139_822_563),
@@ -151,7 +154,7 @@ fn skf_model_by_hand() {
         assert!((found / expected - 1.0).abs() < 1e-9, "{speed}: {found}");
     }
     // The constant coefficient says 18.75 N mm.
-    assert_eq!(SkfBearing::series("65"), None);
+    assert_eq!(Series::named("65"), None);
 }
 
 #[test]

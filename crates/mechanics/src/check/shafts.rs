@@ -4,7 +4,7 @@ use super::{conflict, reference};
 use crate::drive::{Adjust, GearPair, Layout, Parts, Rotation, Shaft, StartSpeed, Support};
 use crate::groups::Sets;
 use crate::trains::trains;
-use crate::{BearingLaw, Coupling, DriveError, Torque};
+use crate::{Bearing, Coupling, DriveError, Torque};
 
 /// Every reason why the shafts of `parts` cannot turn.
 pub(super) fn problems(parts: &Parts) -> Vec<DriveError> {
@@ -55,8 +55,7 @@ fn shaft_problems(index: usize, shaft: &Shaft, parts: &Parts) -> Vec<DriveError>
     let path = format!("{place}.inertia");
     found.extend(DriveError::require(ok, &path, shaft.inertia, "not negative [kg m²]").err());
     found.extend(shaft.loss.problems(&place));
-    let bearing = shaft.loss.bearing.map(|it| it.law);
-    if !matches!(bearing, None | Some(BearingLaw::Torque { .. })) {
+    if !matches!(shaft.loss.bearing, None | Some(Bearing::Torque { .. })) {
         let problem =
             "a bearing that is no sprocket's has a stated torque: nothing says what it carries";
         found.push(conflict(&format!("{place}.bearing"), problem.into()));

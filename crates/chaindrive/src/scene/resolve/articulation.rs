@@ -1,8 +1,9 @@
 //! Resistance of the joints of any chain: friction of pin and bush, and viscous damping.
 
 use chaindrive_contact::friction::SpringSlider;
-use chaindrive_contact::{Friction, Law, ParameterError};
+use chaindrive_contact::{Friction, Law};
 use chaindrive_mechanics::{Articulation, LateralRub};
+use chaindrive_quantities::check;
 use serde_json::json;
 
 use super::contact::{Journal, Spring};
@@ -47,36 +48,29 @@ impl<'a> Joints<'a> {
     /// Radius of the pin \[m\]: as given, or that of the catalogue.
     fn pin(&self) -> Option<f64> {
         let given = self.text.joint.as_ref().and_then(|it| it.pin_diameter);
-        let diameter = given.map(|diameter| diameter.0);
-        diameter
-            .or_else(|| self.of_type?.number(Number::PinDiameter))
-            .map(|it| 0.5 * it)
+        let given = given.map(f64::from);
+        let diameter = given.or_else(|| self.of_type?.number(Number::PinDiameter));
+        diameter.map(|it| 0.5 * it)
     }
 
     /// Friction of pin and bush: as the chain says, or as all chains do; or the usual one where the catalogue knows the pin.
     pub(super) fn friction(&self, findings: &mut Findings<'_>) -> Option<Friction> {
-        let own = self
-            .text
-            .joint
-            .as_ref()
-            .and_then(|it| it.contact.friction.as_ref());
+        let joint = self.text.joint.as_ref();
+        let own = joint.and_then(|it| it.contact.friction.as_ref());
         let journal = Journal {
             spring: self.spring(),
             length: self.length(),
             relative_clearance: self.relative_clearance(),
         };
+        let mut said = |text, place: &str| contact::friction(text, journal, findings.at(place));
         let friction = match (own, &self.scene.contact.joints.friction) {
-            (Some(text), _) => contact::friction(text, "chain.joint.contact", journal, findings),
-            (None, Some(text)) => contact::friction(text, "contact.joints", journal, findings),
+            (Some(text), _) => said(text, "chain.joint.contact.friction"),
+            (None, Some(text)) => said(text, "contact.joints.friction"),
             (None, None) => Some(self.usual(journal.spring, findings)),
         };
-        let factor = self
-            .text
-            .joint
-            .as_ref()
-            .map_or(1.0, |it| it.pressure_factor.0);
+        let factor = joint.map_or(1.0, |it| it.pressure_factor.0.0);
         let pressed = friction?.pressed(factor);
-        let refused = |error: ParameterError| findings.refuse_parameter("chain.joint", &error);
+        let refused = |error| findings.at("chain.joint").sound(Err(error));
         pressed.map_err(refused).ok()
     }
 
@@ -84,7 +78,7 @@ impl<'a> Joints<'a> {
     fn length(&self) -> Option<f64> {
         let given = self.text.joint.as_ref().and_then(|it| it.length);
         given
-            .map(|length| length.0)
+            .map(f64::from)
             .or_else(|| self.of_type?.joint_length())
     }
 
@@ -92,7 +86,7 @@ impl<'a> Joints<'a> {
     fn relative_clearance(&self) -> Option<f64> {
         let given = self.text.joint.as_ref().and_then(|it| it.clearance);
         let clearance = given
-            .map(|clearance| clearance.0)
+            .map(f64::from)
             .or_else(|| self.of_type?.joint_clearance());
         Some(clearance? / self.pin()?).filter(|it| *it > 0.0)
     }
@@ -121,7 +115,7 @@ impl<'a> Joints<'a> {
 
     /// A spring without friction of its own, for seals and plates, where nothing else holds.
     fn bare_spring(&self, findings: &mut Findings<'_>) -> Option<Friction> {
-        let given = || self.text.stiffness.map(|stiffness| stiffness.0);
+        let given = || self.text.stiffness.map(f64::from);
         let link = self.link_stiffness.or_else(given);
         let Some(spring) = link.and_then(|link| self.turning_spring(link)) else {
             let hint = "give `stiffness` and `joint.pin_diameter`: seals and plates hold in proportion to the links";
@@ -141,25 +135,11 @@ impl<'a> Joints<'a> {
         if places.all(|place| (place - first).abs() <= 0.0) {
             return None;
         }
-        let text = &self.text.lateral;
-        let at = |key: &str| format!("chain.lateral.{key}");
-        let friction = text.friction.map(|it| it.0);
-        let lever = text.lever.map(|it| it.0);
-        let play = text.play.map(|it| it.0);
-        Some(LateralRub {
-            coefficient: findings.or_default(
-                friction,
-                &at("friction"),
-                &defaults::LATERAL_FRICTION,
-            ),
-            lever: findings.or_multiple(
-                lever,
-                &at("lever"),
-                &defaults::LATERAL_LEVER,
-                plate_height,
-            ),
-            play: findings.or_default(play, &at("play"), &defaults::LATERAL_PLAY),
-        })
+        let lever = defaults::LATERAL_LEVER.multiple(findings.version, plate_height);
+        let mut at = findings.at("chain.lateral");
+        let mut keys = at.completed(&self.text.lateral);
+        at.fill(&mut keys, "lever", Some(lever), "")?;
+        at.read(keys, check::<LateralRub>)
     }
 
     fn usual(&self, spring: Option<Spring>, findings: &mut Findings<'_>) -> Friction {
@@ -170,18 +150,15 @@ impl<'a> Joints<'a> {
             .map_or(common, |_| "chain.joint.contact.friction");
         let coefficient = defaults::JOINTS_FRICTION.value(findings.version);
         let knows_pin = |chain: &CatalogueChain| chain.number(Number::PinDiameter).is_some();
-        let (true, Some(spring)) = (
-            self.of_type.is_some_and(knows_pin) && coefficient > 0.0,
-            spring,
-        ) else {
+        let rubs = self.of_type.is_some_and(knows_pin) && coefficient > 0.0;
+        let Some(spring) = spring.filter(|_| rubs) else {
             findings.assume_kind(place, "none");
             return Friction::None;
         };
-        let soft = spring.factor;
-        let factor = soft.value(findings.version);
+        let (stiffness, soft) = spring.factor.multiple(findings.version, spring.unit);
         let law = SpringSlider {
             coefficient,
-            stiffness: factor * spring.unit,
+            stiffness,
         };
         let text = json!({
             "kind": "spring-slider",
@@ -189,11 +166,7 @@ impl<'a> Joints<'a> {
             "stiffness": law.stiffness,
         });
         let coefficient = defaults::JOINTS_FRICTION.basis.remark();
-        let stiffness = soft.basis.remark();
-        let remark = format!(
-            "coefficient {coefficient}; stiffness {factor} {}, {stiffness}",
-            soft.unit
-        );
+        let remark = format!("coefficient {coefficient}; stiffness {soft}");
         findings.assume(place, text, remark);
         Friction::SpringSlider(law)
     }
@@ -306,9 +279,9 @@ pub(super) fn refuse_play(text: &schema::Chain, findings: &mut Findings<'_>) {
         ("contact.onset_floor", contact.onset_floor.is_some()),
         ("contact.film", contact.film.is_some()),
     ];
-    for (key, _) in given.iter().filter(|(_, given)| *given) {
-        let hint = "take `model = \"clearance-joints\"` (of clearance 0: joints without play, links that yield), or leave it out";
-        let message = "only pins with clearance have one";
-        findings.refuse_with(&format!("chain.joint.{key}"), message, hint);
-    }
+    let hint = "take `model = \"clearance-joints\"` (of clearance 0: joints without play, links that yield), or leave it out";
+    let message = "only pins with clearance have one";
+    findings
+        .at("chain.joint")
+        .refuse_given(given, message, hint);
 }

@@ -8,7 +8,7 @@ use crate::catalogue::{CatalogueChain, Number, Status, catalogue};
 use crate::scene::error::Problem;
 use crate::scene::schema::{self, Rollers};
 use crate::scene::suggest::{nearest, one_of};
-use chaindrive_quantities::{Force, Inertia, Length, Mass, Stiffness};
+use chaindrive_quantities::{Length, Mass};
 
 /// The chain of the catalogue of a name.
 ///
@@ -83,8 +83,8 @@ fn american(chain: &CatalogueChain, pitch: f64) -> Option<PowerLimits> {
 /// Area on which a pin bears on its bush \[m²\]: d b, of the joints as written or those of the catalogue.
 pub(super) fn bearing_area(text: &schema::Chain, of_type: Option<&CatalogueChain>) -> Option<f64> {
     let joint = text.joint.as_ref();
-    let diameter = joint.and_then(|joint| joint.pin_diameter.map(|it| it.0));
-    let length = joint.and_then(|joint| joint.length.map(|it| it.0));
+    let diameter = joint.and_then(|joint| joint.pin_diameter).map(f64::from);
+    let length = joint.and_then(|joint| joint.length).map(f64::from);
     let diameter = diameter.or_else(|| of_type?.number(Number::PinDiameter))?;
     Some(diameter * length.or_else(|| of_type?.joint_length())?)
 }
@@ -100,64 +100,42 @@ pub(super) fn completed(
 ) -> schema::Chain {
     let mut text = text.clone();
     let mut take = Taking { chain, findings };
-    take.number(&mut text.pitch, "pitch", Number::Pitch, Length);
+    take.number(&mut text.pitch, "pitch", Number::Pitch);
     take.number(
         &mut text.roller_diameter,
         "roller_diameter",
         Number::RollerDiameter,
-        Length,
     );
-    take.number(
-        &mut text.plate_height,
-        "plate_height",
-        Number::PlateHeight,
-        Length,
-    );
+    take.number(&mut text.plate_height, "plate_height", Number::PlateHeight);
     take.number(
         &mut text.breaking_load,
         "breaking_load",
         Number::BreakingLoad,
-        Force,
     );
     if text.model.has_springs() {
         if text.masses.is_none() {
             take.value(&mut text.mass, "mass", chain.mass().map(Mass), Status::Mass);
         }
         if text.stiffnesses.is_none() {
-            take.number(
-                &mut text.stiffness,
-                "stiffness",
-                Number::LinkStiffness,
-                Stiffness,
-            );
+            take.number(&mut text.stiffness, "stiffness", Number::LinkStiffness);
         }
         if text.rollers != Some(Rollers::Free) {
             return text;
         }
         let inner = text.inner.get_or_insert_default();
-        take.number(&mut inner.mass, "inner.mass", Number::InnerMass, Mass);
+        take.number(&mut inner.mass, "inner.mass", Number::InnerMass);
         let outer = text.outer.get_or_insert_default();
-        take.number(&mut outer.mass, "outer.mass", Number::OuterMass, Mass);
+        take.number(&mut outer.mass, "outer.mass", Number::OuterMass);
         take.roller(&mut text);
         take.joint(&mut text);
         return text;
     }
     let inner = text.inner.get_or_insert_default();
-    take.number(&mut inner.mass, "inner.mass", Number::InnerMass, Mass);
-    take.number(
-        &mut inner.inertia,
-        "inner.inertia",
-        Number::InnerInertia,
-        Inertia,
-    );
+    take.number(&mut inner.mass, "inner.mass", Number::InnerMass);
+    take.number(&mut inner.inertia, "inner.inertia", Number::InnerInertia);
     let outer = text.outer.get_or_insert_default();
-    take.number(&mut outer.mass, "outer.mass", Number::OuterMass, Mass);
-    take.number(
-        &mut outer.inertia,
-        "outer.inertia",
-        Number::OuterInertia,
-        Inertia,
-    );
+    take.number(&mut outer.mass, "outer.mass", Number::OuterMass);
+    take.number(&mut outer.inertia, "outer.inertia", Number::OuterInertia);
     if chain.kind == "bush" {
         let none = Some(Rollers::None);
         take.value(&mut text.rollers, "rollers", none, Status::Dimensions);
@@ -180,18 +158,12 @@ struct Taking<'c, 'f, 't> {
 impl Taking<'_, '_, '_> {
     fn roller(&mut self, text: &mut schema::Chain) {
         let roller = text.roller.get_or_insert_default();
-        self.number(&mut roller.mass, "roller.mass", Number::RollerMass, Mass);
-        self.number(
-            &mut roller.inertia,
-            "roller.inertia",
-            Number::RollerInertia,
-            Inertia,
-        );
+        self.number(&mut roller.mass, "roller.mass", Number::RollerMass);
+        self.number(&mut roller.inertia, "roller.inertia", Number::RollerInertia);
         self.number(
             &mut roller.bush_diameter,
             "roller.bush_diameter",
             Number::BushDiameter,
-            Length,
         );
     }
 
@@ -201,7 +173,6 @@ impl Taking<'_, '_, '_> {
             &mut joint.pin_diameter,
             "joint.pin_diameter",
             Number::PinDiameter,
-            Length,
         );
         let clearance = self.chain.joint_clearance().map(Length);
         self.value(
@@ -219,14 +190,13 @@ impl Taking<'_, '_, '_> {
         );
     }
 
-    fn number<T: Serialize>(
+    fn number<T: Serialize + From<f64>>(
         &mut self,
         place: &mut Option<T>,
         key: &str,
         number: Number,
-        quantity: fn(f64) -> T,
     ) {
-        let value = self.chain.number(number).map(quantity);
+        let value = self.chain.number(number).map(T::from);
         self.value(place, key, value, number.status());
     }
 

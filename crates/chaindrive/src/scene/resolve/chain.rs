@@ -68,7 +68,7 @@ pub(super) fn resolve(
         None => written.clone(),
     };
     let text = &strands::as_one(text, of_type);
-    let Some(pitch) = text.pitch.map(|pitch| pitch.0) else {
+    let Some(pitch) = text.pitch.map(f64::from) else {
         findings.refuse_with("chain.pitch", "missing", "give the nominal pitch");
         return None;
     };
@@ -86,11 +86,13 @@ pub(super) fn resolve(
         }
         None => {
             let default = &defaults::ROLLER_DIAMETER;
-            findings.or_multiple(None, "chain.roller_diameter", default, pitch)
+            findings
+                .at("chain.roller_diameter")
+                .or_multiple(None::<f64>, default, pitch)
         }
     };
     let roller_length = text.roller.as_ref().and_then(|roller| roller.length);
-    let roller_length = roller_length.map(|length| length.0);
+    let roller_length = roller_length.map(f64::from);
     let roller_length = roller_length.or(of_type.and_then(catalogue::roller_length));
     let ends = ends(text, scene, findings);
     let widths = (roller_diameter, roller_length);
@@ -117,9 +119,8 @@ pub(super) fn resolve(
     let roller_deviations = vary(alike, deviation, 3, Some(roller_diameter));
     let mean = stiffness.iter().sum::<f64>() / stiffness.len() as f64;
     let joints = Joints::new(scene, text, model.has_springs().then_some(mean));
-    let plate_height = findings.or_multiple(
-        text.plate_height.map(|height| height.0),
-        "chain.plate_height",
+    let plate_height = findings.at("chain.plate_height").or_multiple(
+        text.plate_height,
         &defaults::PLATE_HEIGHT,
         roller_diameter,
     );
@@ -136,7 +137,7 @@ pub(super) fn resolve(
         roller_deviations,
         plate_height,
         articulation,
-        drag: text.drag.map_or(0.0, |drag| drag.0),
+        drag: text.drag.map_or(0.0, f64::from),
         ends: ends?,
         model,
         strength: strength(text, of_type, pitch, findings),
@@ -162,10 +163,10 @@ fn strength(
     let is_rated = !matches!(capacity, Capacity::Unknown(Unrated::NoType));
     let default = Strength::default();
     let service_factor = match text.service_factor {
-        None if is_rated => {
-            findings.or_default(None, "chain.service_factor", &defaults::SERVICE_FACTOR)
-        }
-        given => given.map_or(default.service_factor, |factor| factor.0),
+        None if is_rated => findings
+            .at("chain.service_factor")
+            .or(None::<f64>, &defaults::SERVICE_FACTOR),
+        given => given.map_or(default.service_factor, f64::from),
     };
     let strands = text.strands.unwrap_or(default.strands);
     if text.strands.is_none() && is_rated {
@@ -173,7 +174,7 @@ fn strength(
         findings.assume("chain.strands", strands, remark);
     }
     Strength {
-        breaking_load: text.breaking_load.map(|load| load.0),
+        breaking_load: text.breaking_load.map(f64::from),
         bearing_area: catalogue::bearing_area(text, of_type),
         strands,
         service_factor,
@@ -213,12 +214,15 @@ fn damping(
     if let Some(damping) = text.damping {
         return vec![damping.0; stiffness.len()];
     }
-    let ratio = text.damping_ratio.map(|ratio| ratio.0);
+    let default = &defaults::DAMPING_RATIO;
     let ratio = if model.has_springs() {
-        findings.or_default(ratio, "chain.damping_ratio", &defaults::DAMPING_RATIO)
+        findings
+            .at("chain.damping_ratio")
+            .or(text.damping_ratio, default)
     } else {
         // Rigid links are laid, not damped: whatever damping belongs to the laying stiffness.
-        ratio.unwrap_or(defaults::DAMPING_RATIO.value(findings.version))
+        text.damping_ratio
+            .map_or(default.value(findings.version), f64::from)
     };
     // c = 2 ζ √(k m)
     let pairs = stiffness.iter().zip(masses);
@@ -234,23 +238,18 @@ fn springs(
     findings: &mut Findings<'_>,
 ) -> Option<[Vec<f64>; 2]> {
     let rollers = links + usize::from(text.ends.is_some());
-    let given = text
-        .masses
-        .as_ref()
-        .map(|all| all.iter().map(|m| m.0).collect());
     let masses = each(
         ("mass", "masses"),
-        text.mass.map(|m| m.0),
-        given,
+        (text.mass, text.masses.as_ref()),
         rollers,
         findings,
     );
-    let given = text
-        .stiffnesses
-        .as_ref()
-        .map(|all| all.iter().map(|k| k.0).collect());
-    let single = text.stiffness.map(|k| k.0);
-    let stiffness = each(("stiffness", "stiffnesses"), single, given, links, findings);
+    let stiffness = each(
+        ("stiffness", "stiffnesses"),
+        (text.stiffness, text.stiffnesses.as_ref()),
+        links,
+        findings,
+    );
     if text.damping.is_some() && text.damping_ratio.is_some() {
         let message = "`damping` is given too";
         findings.refuse_with("chain.damping_ratio", message, "keep one of them");
@@ -283,8 +282,8 @@ fn lengths(
         }
         return Some(pitches.iter().map(|pitch| pitch.0 * worn).collect());
     }
-    let inner = text.inner_pitch.map_or(pitch, |length| length.0);
-    let outer = text.outer_pitch.map_or(pitch, |length| length.0);
+    let inner = text.inner_pitch.map_or(pitch, f64::from);
+    let outer = text.outer_pitch.map_or(pitch, f64::from);
     let alternating = text.alternates() || text.inner_pitch.is_some() || text.outer_pitch.is_some();
     if alternating && text.ends.is_none() && links % 2 == 1 {
         let message = format!("{links} links, but inner and outer links alternate");
@@ -303,16 +302,17 @@ fn lengths(
 }
 
 /// One value for all, or a value for each.
-fn each(
+fn each<T: Copy + Into<f64>>(
     (one, many): (&str, &str),
-    single: Option<f64>,
-    list: Option<Vec<f64>>,
+    (single, list): (Option<T>, Option<&Vec<T>>),
     count: usize,
     findings: &mut Findings<'_>,
 ) -> Option<Vec<f64>> {
     match (single, list) {
-        (Some(value), None) => Some(vec![value; count]),
-        (None, Some(values)) if values.len() == count => Some(values),
+        (Some(value), None) => Some(vec![value.into(); count]),
+        (None, Some(values)) if values.len() == count => {
+            Some(values.iter().map(|value| (*value).into()).collect())
+        }
         (None, Some(values)) => {
             let part = if many == "masses" { "roller" } else { "link" };
             let message = format!(
@@ -340,14 +340,13 @@ fn ends(text: &schema::Chain, scene: &SceneText, findings: &mut Findings<'_>) ->
         return Some(Ends::Closed);
     };
     let mut resolve = |index: usize, end: &schema::End| {
-        let path = format!("chain.ends[{index}]");
+        let at = findings.at(format!("chain.ends[{index}]"));
         Some(match end {
             schema::End::Free => End::Free,
             schema::End::Fixed => End::Fixed,
             schema::End::Driven { x, y } => {
-                let x = motion::shift(x, &format!("{path}.x"), scene, findings);
-                let y = motion::shift(y, &format!("{path}.y"), scene, findings);
-                End::Driven { x: x?, y: y? }
+                let [x, y] = motion::shifts([x, y], scene, at)?;
+                End::Driven { x, y }
             }
             schema::End::Pulled { force: [x, y] } => End::Pulled {
                 force: chaindrive_geometry::Vector::new(x.0, y.0),

@@ -103,7 +103,7 @@ fn several<'s>(
             }
             continue;
         };
-        let found = findings.lookup(&names.chains, "chain", chain, &path);
+        let found = findings.at(&*path).lookup(&names.chains, "chain", chain);
         match (found, *owner) {
             (None, _) => sound = false,
             (Some(found), Some(passed)) if found != passed => {

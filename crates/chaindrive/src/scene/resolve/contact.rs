@@ -1,14 +1,15 @@
 //! Contacts: what a sprocket or guide says, completed by what holds for all.
 
 use chaindrive_contact::dissipation::{Hysteresis, Viscous};
-use chaindrive_contact::{Dissipation, Elastic, Film, Friction, Law};
+use chaindrive_contact::{Dissipation, Elastic, Film, Friction, Law, Lubricant};
 use chaindrive_mechanics::Surface;
 
 use super::Findings;
+use super::cursor::Cursor;
 use super::film::{self, Strip};
 use super::law::{Pair, elastic};
 use crate::scene::defaults::{self, Default};
-use crate::scene::schema::{self, Contact, Stack, Written};
+use crate::scene::schema::{Contact, Stack, Written};
 
 /// Values on which a contact falls back.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +52,15 @@ pub(super) struct Said<'a> {
     pub(super) fallback: Fallback,
 }
 
-impl Said<'_> {
+impl<'a> Said<'a> {
+    /// The text under a key and its place: that of the contact, or else that for all.
+    fn text<T>(&self, key: &str, under: fn(&Contact) -> Option<&T>) -> Option<(&'a T, String)> {
+        let own = under(self.own).map(|text| (text, self.path));
+        let common = || Some((under(self.common)?, self.fallback.path));
+        let (text, path) = own.or_else(common)?;
+        Some((text, format!("{path}.{key}")))
+    }
+
     /// Normal force, friction and film; `absent` gives the elastic law of a scene without one.
     pub(super) fn surface(
         &self,
@@ -71,30 +80,23 @@ impl Said<'_> {
     }
 
     /// Text of the film, and its path.
-    pub(super) fn film_text(&self) -> Option<(&schema::Film, String)> {
-        let own = self.own.film.as_ref().map(|film| (film, self.path));
-        let common = self.common.film.as_ref();
-        let found = own.or(common.map(|film| (film, self.fallback.path)));
-        found.map(|(film, path)| (film, format!("{path}.film")))
+    pub(super) fn film_text(&self) -> Option<(&'a Written<Film>, String)> {
+        self.text("film", |contact| contact.film.as_ref())
     }
 
     /// Film of oil between the surfaces; none without a text, or with a refused one.
     pub(super) fn film(&self, strip: Strip, findings: &mut Findings<'_>) -> Option<Film> {
         let (text, path) = self.film_text()?;
-        film::resolve(text, &path, strip, findings)
+        film::resolve(text, strip, findings.at(path))
     }
 
     /// How it rubs.
     pub(super) fn friction(&self, findings: &mut Findings<'_>) -> Option<Friction> {
-        let common = self.fallback.path;
-        match (&self.own.friction, &self.common.friction) {
-            (Some(text), _) => friction(text, self.path, Journal::default(), findings),
-            (None, Some(text)) => friction(text, common, Journal::default(), findings),
-            (None, None) => {
-                findings.assume_kind(&format!("{common}.friction"), "none");
-                Some(Friction::None)
-            }
+        if let Some((text, path)) = self.text("friction", |contact| contact.friction.as_ref()) {
+            return friction(text, Journal::default(), findings.at(path));
         }
+        findings.assume_kind(&format!("{}.friction", self.fallback.path), "none");
+        Some(Friction::None)
     }
 
     /// How it pushes; `absent` as in [`Said::surface`].
@@ -104,38 +106,32 @@ impl Said<'_> {
         findings: &mut Findings<'_>,
         absent: impl FnOnce(&mut Findings<'_>) -> Option<Elastic>,
     ) -> Option<Law> {
-        let Self { own, common, .. } = self;
-        let at = |path: &str| format!("{path}.law");
-        let elastic = match (&own.law, &common.law) {
-            (Some(law), _) => elastic(law, pair, &at(self.path), findings),
-            (None, Some(law)) => elastic(law, pair, &at(self.fallback.path), findings),
-            (None, None) => absent(findings),
+        let elastic = match self.text("law", |contact| contact.law.as_ref()) {
+            Some((law, path)) => elastic(law, pair, findings.at(path)),
+            None => absent(findings),
         };
         let dissipation = self.dissipation(findings);
-        let floor = own.onset_floor.or(common.onset_floor).map(|v| v.0);
-        let place = format!("{}.onset_floor", self.fallback.path);
-        let onset_floor = findings.or_default(floor, &place, &defaults::ONSET_FLOOR);
+        let floor = self.own.onset_floor.or(self.common.onset_floor);
+        let mut common = findings.at(self.fallback.path);
         Some(Law {
+            onset_floor: common.key("onset_floor").or(floor, &defaults::ONSET_FLOOR),
             elastic: elastic?,
             series: self.series().filter(|stiffness| *stiffness > 0.0),
             dissipation: dissipation?,
-            onset_floor,
         })
     }
 
     /// Where the scene gives a law, if it does.
     pub(super) fn law_path(&self) -> Option<String> {
-        let own = self.own.law.is_some().then_some(self.path);
-        let common = self.common.law.is_some().then_some(self.fallback.path);
-        own.or(common).map(|path| format!("{path}.law"))
+        let (_, path) = self.text("law", |contact| contact.law.as_ref())?;
+        Some(path)
     }
 
     /// Stiffness \[N/m\] of what lies behind, where the scene says something of it; zero is rigid.
     pub(super) fn series(&self) -> Option<f64> {
         let own_stack = self.own.stack.is_some();
         let common = self.common.series.filter(|_| !own_stack);
-        let given = self.own.series.or(common);
-        given.map(|stiffness| stiffness.0)
+        self.own.series.or(common).map(f64::from)
     }
 
     /// Parts that lie behind, where the scene asks for them, and the place where it does; refused beside a stiffness.
@@ -164,11 +160,6 @@ impl Said<'_> {
         let says = |text: &Contact| {
             text.restitution.is_some() || text.damping.is_some() || text.dissipation.is_some()
         };
-        let (said, place) = if says(own) {
-            (own, path)
-        } else {
-            (common, fallback.path)
-        };
         if let Some((_, film)) = self.film_text() {
             for (text, place) in [(own, path), (common, fallback.path)] {
                 if says(text) {
@@ -181,9 +172,15 @@ impl Said<'_> {
             }
             return Some(Dissipation::None);
         }
+        let (said, place) = if says(own) {
+            (own, path)
+        } else {
+            (common, fallback.path)
+        };
+        let mut at = findings.at(place);
         let mut twice = |key: &str, other: &str| {
             let message = format!("`{other}` is given too");
-            findings.refuse_once(&format!("{place}.{key}"), message, "keep one of them");
+            at.key(key).refuse_once(message, "keep one of them");
         };
         if let Some(damping) = said.damping {
             if said.restitution.is_some() {
@@ -203,23 +200,19 @@ impl Said<'_> {
             twice("restitution", "dissipation = \"none\"");
             return None;
         }
-        let name = findings.or_chosen(
-            name,
-            &format!("{place}.dissipation"),
-            &defaults::DISSIPATION,
-        );
+        let name = at
+            .key("dissipation")
+            .or_chosen(name, &defaults::DISSIPATION);
         let restitution = match name {
             Hysteresis::None => 1.0,
-            _ => findings.or_default(
-                said.restitution.or(common.restitution).map(|e| e.0),
-                &format!("{place}.restitution"),
+            _ => at.key("restitution").or(
+                said.restitution.or(common.restitution),
                 fallback.restitution,
             ),
         };
         let dissipation = Dissipation::with_restitution(name, restitution);
-        let sound = dissipation.check();
-        let sound = sound.map_err(|error| findings.refuse_parameter(place, &error));
-        sound.ok().map(|()| dissipation)
+        at.sound(dissipation.check())?;
+        Some(dissipation)
     }
 }
 
@@ -242,50 +235,30 @@ pub(super) struct Journal {
     pub(super) relative_clearance: Option<f64>,
 }
 
-/// The friction that a scene describes at `place`; what it leaves open of a pin in its bush is that of `journal`.
+/// The friction that a scene describes; what it leaves open of a pin in its bush is that of `journal`.
 pub(super) fn friction(
     text: &Written<Friction>,
-    place: &str,
     journal: Journal,
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<Friction> {
-    let path = format!("{place}.friction");
-    let mut keys = findings.completed(text.keys.clone(), "Friction", &path);
+    let mut keys = at.completed(text);
     let kind = text.word("kind");
     let lubricated = kind == "stribeck";
-    if lubricated && keys.get("viscosity").is_none() {
-        let path = format!("{path}.viscosity");
-        keys["viscosity"] = findings.oil_dynamic_viscosity(&path)?.into();
+    if lubricated {
+        at.fill_viscosity(&mut keys, Lubricant::dynamic_viscosity)?;
+        let of_pin = Some("that of the pin in its bush");
+        let length = journal.length.zip(of_pin);
+        let clearance = journal.relative_clearance.zip(of_pin);
+        let hint = "give the radial clearance over the radius, such as 0.01";
+        at.fill(&mut keys, "length", length, "give it, such as \"12 mm\"")?;
+        at.fill(&mut keys, "relative_clearance", clearance, hint)?;
     }
-    let known = [
-        ("length", journal.length, "give it, such as \"12 mm\""),
-        (
-            "relative_clearance",
-            journal.relative_clearance,
-            "give the radial clearance over the radius, such as 0.01",
-        ),
-    ];
-    for (key, value, hint) in known {
-        if lubricated && keys.get(key).is_none() {
-            let path = format!("{path}.{key}");
-            let Some(value) = value else {
-                findings.refuse_once(&path, "missing", hint);
-                return None;
-            };
-            findings.assume(&path, value, "that of the pin in its bush");
-            keys[key] = value.into();
-        }
+    if lubricated || kind == "spring-slider" {
+        let version = at.findings.version;
+        let spring = journal.spring;
+        let spring = spring.map(|it| it.factor.multiple(version, it.unit));
+        let hint = "give it, such as \"50 MN/m\"; it is known in joints of links whose pins and stiffness are";
+        at.fill(&mut keys, "stiffness", spring, hint)?;
     }
-    if (lubricated || kind == "spring-slider") && keys.get("stiffness").is_none() {
-        let path = format!("{path}.stiffness");
-        let Some(spring) = journal.spring else {
-            let hint = "give it, such as \"50 MN/m\"; it is known in joints of links whose pins and stiffness are";
-            findings.refuse_once(&path, "missing", hint);
-            return None;
-        };
-        keys["stiffness"] = findings
-            .or_multiple(None, &path, spring.factor, spring.unit)
-            .into();
-    }
-    findings.read(keys, &path, Friction::check)
+    at.read(keys, Friction::check)
 }

@@ -45,12 +45,11 @@ pub(super) fn links(
         findings.refuse_with("chain.links", "missing", "give the number of links");
         return None;
     }
-    let roller_diameter = text.roller_diameter.map(|diameter| diameter.0);
-    let roller_diameter = roller_diameter
-        .unwrap_or_else(|| pitch * defaults::ROLLER_DIAMETER.value(findings.version));
-    let plate_height = text.plate_height.map(|height| height.0);
-    let plate_height = plate_height
-        .unwrap_or_else(|| roller_diameter * defaults::PLATE_HEIGHT.value(findings.version));
+    let version = findings.version;
+    let usual = pitch * defaults::ROLLER_DIAMETER.value(version);
+    let roller_diameter = text.roller_diameter.map_or(usual, f64::from);
+    let usual = roller_diameter * defaults::PLATE_HEIGHT.value(version);
+    let plate_height = text.plate_height.map_or(usual, f64::from);
     Some(
         match around(scene, described, [pitch, roller_diameter, plate_height]) {
             Ok(links) => {

@@ -1,6 +1,6 @@
 //! Shafts by their names, or by those of their sprockets.
 
-use super::Findings;
+use super::cursor::Cursor;
 use crate::scene::suggest::one_of;
 
 /// Shafts that couplings and gears can join, and torques follow, by name.
@@ -14,19 +14,14 @@ pub(super) struct Ends<'n> {
 
 impl Ends<'_> {
     /// The shafts that two names mean.
-    pub(super) fn find(
-        &self,
-        between: &[String; 2],
-        path: &str,
-        findings: &mut Findings<'_>,
-    ) -> Option<[usize; 2]> {
-        let [first, second] =
-            [0, 1].map(|i| self.one(&between[i], &format!("{path}.between[{i}]"), findings));
+    pub(super) fn find(&self, between: &[String; 2], mut at: Cursor<'_, '_>) -> Option<[usize; 2]> {
+        let mut at = at.key("between");
+        let [first, second] = [0, 1].map(|i| self.one(&between[i], at.entry(i)));
         Some([first?, second?])
     }
 
     /// The shaft that a name means.
-    pub(super) fn one(&self, name: &str, path: &str, findings: &mut Findings<'_>) -> Option<usize> {
+    pub(super) fn one(&self, name: &str, mut at: Cursor<'_, '_>) -> Option<usize> {
         let shaft = self.shafts.iter().position(|known| *known == name);
         let sprocket = || self.sprockets.iter().position(|known| *known == name);
         let found = shaft
@@ -36,7 +31,7 @@ impl Ends<'_> {
             let all = self.shafts.iter().chain(&self.sprockets);
             let known: Vec<&str> = all.copied().collect();
             let message = format!("no shaft or sprocket is named `{name}`");
-            findings.refuse_with(path, message, one_of(name, &known));
+            at.refuse(message, one_of(name, &known));
         }
         found
     }

@@ -1,12 +1,11 @@
 //! Films of oil, completed from the surfaces that they lie between.
 
-use chaindrive_contact::Film;
+use chaindrive_contact::{Film, Lubricant};
 use chaindrive_geometry::{Piece, ToothGap};
 
-use super::Findings;
+use super::cursor::Cursor;
 use super::law::Pair;
-use crate::scene::defaults;
-use crate::scene::schema;
+use crate::scene::schema::Written;
 
 /// Dimensions of the strip between two surfaces, as far as the drive gives them.
 #[derive(Clone, Copy, Debug)]
@@ -65,62 +64,22 @@ fn equivalent(inner: f64, outer: f64) -> Option<f64> {
     (apart > 0.0).then(|| inner * outer / apart)
 }
 
-/// Film of the text at `path` between such surfaces; none for a refused text.
-pub(super) fn resolve(
-    text: &schema::Film,
-    path: &str,
-    strip: Strip,
-    findings: &mut Findings<'_>,
-) -> Option<Film> {
-    let at = |key: &str| format!("{path}.{key}");
-    let viscosity = match text.viscosity {
-        Some(viscosity) => Some(viscosity.0),
-        None => findings.oil_dynamic_viscosity(&at("viscosity")),
-    };
-    let radius = text.radius.map(|it| it.0);
-    let half_width = text.half_width.map(|it| it.0);
-    let length = text.length.map(|it| it.0);
-    let mut measure = |given: Option<f64>, known: Option<f64>, key: &str, hint: &str| {
-        if given.is_none() {
-            match known {
-                Some(known) => {
-                    findings.assume(&at(key), known, "follows from the surfaces");
-                }
-                None => findings.refuse_with(&at(key), "missing", hint),
-            }
-        }
-        given.or(known)
-    };
-    let hint = "give the radius of the cylinder beside a plane, r₁ r₂/(r₂ − r₁), such as \"2.7 m\"";
-    let radius = measure(radius, strip.radius, "radius", hint);
+/// Film of a text between such surfaces; none for a refused text.
+pub(super) fn resolve(text: &Written<Film>, strip: Strip, mut at: Cursor<'_, '_>) -> Option<Film> {
+    let mut keys = at.completed(text);
+    let viscosity = at.fill_viscosity(&mut keys, Lubricant::dynamic_viscosity);
     let hint = "give it, such as \"14 mm\"";
-    let half_width = measure(half_width, strip.half_width, "half_width", hint);
-    let length = measure(length, strip.length, "length", hint);
-    let (radius, half_width, length) = (radius?, half_width?, length?);
-    let mut or_default =
-        |given: Option<f64>, key: &str, default| findings.or_default(given, &at(key), default);
-    let pressure = text.pressure_coefficient.map(|it| it.0);
-    let pressure = or_default(
-        pressure,
-        "pressure_coefficient",
-        &defaults::PRESSURE_VISCOSITY,
-    );
-    let roughness = text.roughness.map(|it| it.0);
-    let roughness = or_default(roughness, "roughness", &defaults::FILM_ROUGHNESS);
-    let refill = text.refill_time.map(|it| it.0);
-    let refill_time = or_default(refill, "refill_time", &defaults::REFILL_TIME);
-    let film = Film {
-        viscosity: viscosity?,
-        pressure_coefficient: pressure,
-        radius,
-        half_width,
-        length,
-        leakage_factor: text.leakage_factor.map(|it| it.0),
-        thickness: text.thickness.0,
-        roughness,
-        refill_time,
-    };
-    let sound = film.check();
-    let sound = sound.map_err(|error| findings.refuse_parameter(path, &error));
-    sound.ok().map(|()| film)
+    let of_radius =
+        "give the radius of the cylinder beside a plane, r₁ r₂/(r₂ − r₁), such as \"2.7 m\"";
+    let measures = [
+        ("radius", strip.radius, of_radius),
+        ("half_width", strip.half_width, hint),
+        ("length", strip.length, hint),
+    ];
+    let filled = measures.map(|(key, known, hint)| {
+        let known = known.zip(Some("follows from the surfaces"));
+        at.fill(&mut keys, key, known, hint)
+    });
+    viscosity.filter(|()| !filled.contains(&None))?;
+    at.read(keys, Film::check)
 }

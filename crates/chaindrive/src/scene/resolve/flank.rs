@@ -7,8 +7,8 @@ use chaindrive_mechanics::Flank;
 
 use serde_json::Value as Json;
 
-use super::Findings;
 use super::chain::Resolved;
+use super::cursor::Cursor;
 use super::law::{elastic, steel};
 use crate::scene::defaults;
 use crate::scene::schema::{self, SceneText};
@@ -17,38 +17,35 @@ use crate::scene::schema::{self, SceneText};
 /// rigid links leave the law of their teeth open.
 pub(super) fn resolve(
     text: &schema::Sprocket,
-    path: &str,
     scene: &SceneText,
     gap: &ToothGap,
     chain: &Resolved,
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<Flank> {
     let diameter = chain.chain.roller_diameter;
     let given = match (&text.flank, &scene.contact.flanks) {
-        (Some(own), _) => Some((own, format!("{path}.flank"))),
-        (None, Some(common)) => Some((common, "contact.flanks".to_owned())),
+        (Some(own), _) => Some((own, at.key("flank"))),
+        (None, Some(common)) => Some((common, at.findings.at("contact.flanks"))),
         (None, None) => None,
     };
-    if let Some((flank, path)) = given {
-        let elastic = elastic(&flank.law, chain.roller(), &format!("{path}.law"), findings)?;
-        let width = flank.width.map(|width| width.0);
-        let place = format!("{path}.width");
-        let width = findings.or_multiple(width, &place, &defaults::FLANK_WIDTH, diameter);
+    if let Some((flank, mut at)) = given {
+        let elastic = elastic(&flank.law, chain.roller(), at.key("law"))?;
+        let width = at
+            .key("width")
+            .or_multiple(flank.width, &defaults::FLANK_WIDTH, diameter);
         return Some(Flank { elastic, width });
     }
     let open = text.contact.law.is_none() && scene.contact.teeth.law.is_none();
     if !(chain.is_rigid() && open) {
         return None;
     }
-    let steel = steel(findings.version);
-    let (elastic, text) = on_bulge(gap, chain, steel)?;
-    findings.assume(
-        &format!("{path}.flank.law"),
-        text,
-        "follows from the curvature of the flank",
-    );
-    let place = format!("{path}.flank.width");
-    let width = findings.or_multiple(None, &place, &defaults::FLANK_WIDTH, diameter);
+    let mut at = at.key("flank");
+    let (elastic, text) = on_bulge(gap, chain, steel(at.findings.version))?;
+    at.key("law")
+        .assume(text, "follows from the curvature of the flank");
+    let width = at
+        .key("width")
+        .or_multiple(None::<f64>, &defaults::FLANK_WIDTH, diameter);
     Some(Flank { elastic, width })
 }
 

@@ -6,6 +6,7 @@ use chaindrive_geometry::{Arc, ArcSpline, GeometryError, Piece, Point, bar, rail
 use chaindrive_mechanics::{Guide, GuideSupport, Sprocket, Touches};
 
 use super::chain::Resolved;
+use super::cursor::Cursor;
 use super::film::Strip;
 use super::law::linear;
 use super::on_span::{self, Passing};
@@ -22,14 +23,17 @@ pub(super) fn resolve_all<'c>(
     sprockets: &[Sprocket],
     chain_of: impl Fn(usize) -> (&'c Resolved, Passing<'c>),
 ) -> Option<Vec<Guide>> {
-    let guides: Vec<_> = scene
-        .guides
-        .iter()
-        .enumerate()
+    let guides = scene.guides.iter().enumerate();
+    let guides: Vec<_> = guides
         .map(|(i, text)| {
-            let path = format!("guides[{i}]");
             let passed = (chain_of(i), sprockets);
-            resolve(text, &path, scene, names, passed, findings)
+            resolve(
+                text,
+                scene,
+                names,
+                passed,
+                findings.at(format!("guides[{i}]")),
+            )
         })
         .collect();
     guides.into_iter().collect()
@@ -37,36 +41,35 @@ pub(super) fn resolve_all<'c>(
 
 fn resolve(
     text: &schema::Guide,
-    path: &str,
     scene: &SceneText,
     names: &Names<'_>,
     ((chain, passing), sprockets): ((&Resolved, Passing<'_>), &[Sprocket]),
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<Guide> {
-    let place = format!("{path}.face");
+    let mut of_face = at.key("face");
     let face = match &text.face {
-        Face::OnSpan { .. } => {
-            let passed = (chain, &passing, sprockets);
-            on_span(text, &place, passed, findings)
-        }
+        Face::OnSpan { .. } => on_span(text, (chain, &passing, sprockets), of_face),
         face => {
-            let face = placed(face, &place, findings);
-            findings.keep(&place, face)
+            let face = placed(face, of_face.again());
+            of_face.keep(face)
         }
     };
-    let support = support(text, path, scene, names, findings);
+    let support = support(text, scene, names, at.key("support"));
+    let at = at.key("contact");
     let said = contact::Said {
         own: &text.contact,
-        path: &format!("{path}.contact"),
+        path: &at.path,
         common: &scene.contact.guides,
         fallback: contact::GUIDES,
     };
     let strip = Some(Strip::on_guide(chain.roller()));
-    let surface = said.surface(chain.roller(), strip, findings, |findings| {
-        let place = format!("{path}.contact.law");
-        let stiffness = chain.link_stiffness();
-        let default = &defaults::GUIDES_STIFFNESS;
-        Some(linear(stiffness, &place, default, findings))
+    let surface = said.surface(chain.roller(), strip, at.findings, |findings| {
+        let at = findings.at(format!("{}.law", said.path));
+        Some(linear(
+            chain.link_stiffness(),
+            &defaults::GUIDES_STIFFNESS,
+            at,
+        ))
     });
     Some(Guide {
         name: text.name.clone(),
@@ -80,9 +83,8 @@ fn resolve(
 /// Working face on a span.
 fn on_span(
     guide: &schema::Guide,
-    path: &str,
     (chain, passing, sprockets): (&Resolved, &Passing<'_>, &[Sprocket]),
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<ArcSpline> {
     let Face::OnSpan {
         between,
@@ -99,13 +101,13 @@ fn on_span(
         return None;
     };
     let span = passing.span(guide, between.as_ref());
-    let span = findings.keep(path, span)?;
-    let place = format!("{path}.bow");
+    let span = at.keep(span)?;
+    let version = at.findings.version;
     if radius.is_none() {
         let Some(bow) = bow else {
             let hint =
                 "say how far a straight face pushes the chain, less than zero where it keeps clear";
-            findings.refuse_with(&place, "missing", hint);
+            at.key("bow").refuse("missing", hint);
             return None;
         };
         let side = on_span::side(*material);
@@ -114,45 +116,45 @@ fn on_span(
         let mut end_radius = *end_radius;
         if end_radius.is_none() && guide.touches == Touches::Rollers {
             let tips = passing.tips(guide, between.as_ref(), sprockets);
-            let angle = end_angle.map_or(defaults::END_ANGLE.value(findings.version), |it| it.0);
-            let usual = defaults::END_RADIUS.value(findings.version) * (ends[1] - ends[0]).norm();
+            let angle = end_angle.map_or(defaults::END_ANGLE.value(version), f64::from);
+            let usual = defaults::END_RADIUS.value(version) * (ends[1] - ends[0]).norm();
             if let Some((radius, name)) =
                 shorter_ends(ends, (usual, angle, *material), &tips, passing.size[0])
             {
                 let remark = format!("computed: clear of the teeth of `{name}`");
-                findings.assume(&format!("{path}.end_radius"), radius, remark);
+                at.key("end_radius").assume(radius, remark);
                 end_radius = Some(Length(radius));
             }
         }
-        let face = straight(ends, (&end_radius, end_angle, *material), path, findings);
-        return findings.keep(path, face);
+        let face = straight(ends, (end_radius, *end_angle, *material), at.again());
+        return at.keep(face);
     }
     let bow = match bow {
         Some(bow) => bow.0,
         None if chain.uncounted.is_some() => {
-            let phase = defaults::PHASE.value(findings.version);
+            let phase = defaults::PHASE.value(version);
             let range = passing.pitches_by_bow(guide, phase).map(|[least, most]| {
                 format!(": by its bow the route takes {least:.2} to {most:.2} links")
             });
             let range = range.unwrap_or_default();
             let hint = format!("give it, or the number of links from which it follows{range}");
-            findings.refuse_with(&place, "missing", hint);
+            at.key("bow").refuse("missing", hint);
             return None;
         }
         None => {
             let links = chain.chain.links();
             // A drive is not another one for where it happens to stand.
-            let phase = defaults::PHASE.value(findings.version);
+            let phase = defaults::PHASE.value(version);
             let found = passing.closing_bow(guide, links, phase);
-            let found = findings.keep(&place, found)?;
+            let found = at.key("bow").keep(found)?;
             let remark = format!("computed: {links} links close without stress");
-            findings.assume(&place, found, remark);
+            at.key("bow").assume(found, remark);
             found
         }
     };
     let face = on_span::curved(guide, bow, passing.size)?.on(&span);
-    let arc = findings.keep(path, face)?;
-    findings.keep(path, ArcSpline::open(&[Piece::Arc(arc)]))
+    let arc = at.keep(face)?;
+    at.keep(ArcSpline::open(&[Piece::Arc(arc)]))
 }
 
 /// Halvings until a radius is found to rounding.
@@ -211,26 +213,19 @@ fn along_travel(
 /// A straight face between two ends \[m\] in the order of travel, with what a scene says of its curved ends.
 fn straight(
     [start, end]: [Point; 2],
-    (end_radius, end_angle, material): (&Option<Length>, &Option<Angle>, TravelSide),
-    path: &str,
-    findings: &mut Findings<'_>,
+    (radius, angle, material): (Option<Length>, Option<Angle>, TravelSide),
+    mut at: Cursor<'_, '_>,
 ) -> Result<ArcSpline, GeometryError> {
-    let radius = end_radius.map(|radius| radius.0);
-    let place = format!("{path}.end_radius");
     let length = (end - start).norm();
-    let radius = findings.or_multiple(radius, &place, &defaults::END_RADIUS, length);
-    let angle = end_angle.map(|angle| angle.0);
-    let place = format!("{path}.end_angle");
-    let angle = findings.or_default(angle, &place, &defaults::END_ANGLE);
+    let radius = at
+        .key("end_radius")
+        .or_multiple(radius, &defaults::END_RADIUS, length);
+    let angle = at.key("end_angle").or(angle, &defaults::END_ANGLE);
     along_travel([start, end], (radius, angle, material))
 }
 
 /// Working face in a place of its own, with its material on the left of travel.
-fn placed(
-    face: &Face,
-    path: &str,
-    findings: &mut Findings<'_>,
-) -> Result<ArcSpline, GeometryError> {
+fn placed(face: &Face, at: Cursor<'_, '_>) -> Result<ArcSpline, GeometryError> {
     match face {
         // The span is somebody else's.
         Face::OnSpan { .. } => Err(GeometryError::NoPieces),
@@ -242,7 +237,7 @@ fn placed(
             material,
         } => {
             let ends = [point(*start), point(*end)];
-            straight(ends, (end_radius, end_angle, *material), path, findings)
+            straight(ends, (*end_radius, *end_angle, *material), at)
         }
         Face::Points {
             points,
@@ -250,7 +245,7 @@ fn placed(
             material,
         } => {
             let mut points: Vec<Point> = points.iter().copied().map(point).collect();
-            let mut radii: Vec<f64> = radii.iter().map(|radius| radius.0).collect();
+            let mut radii: Vec<f64> = radii.iter().copied().map(f64::from).collect();
             if *material == TravelSide::Right {
                 points.reverse();
                 radii.reverse();
@@ -276,25 +271,22 @@ fn placed(
 
 fn support(
     text: &schema::Guide,
-    path: &str,
     scene: &SceneText,
     names: &Names<'_>,
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<GuideSupport> {
-    let path = format!("{path}.support");
     Some(match &text.support {
         None => {
-            findings.assume_kind(&path, "fixed");
+            at.assume_kind("fixed");
             GuideSupport::Fixed
         }
         Some(schema::GuideSupport::Fixed) => GuideSupport::Fixed,
         Some(schema::GuideSupport::Prescribed { x, y }) => {
-            let x = motion::shift(x, &format!("{path}.x"), scene, findings);
-            let y = motion::shift(y, &format!("{path}.y"), scene, findings);
-            GuideSupport::Prescribed { x: x?, y: y? }
+            let [x, y] = motion::shifts([x, y], scene, at)?;
+            GuideSupport::Prescribed { x, y }
         }
         Some(schema::GuideSupport::Tensioner { name }) => {
-            GuideSupport::Tensioner(names.tensioner(name, &format!("{path}.name"), findings)?)
+            GuideSupport::Tensioner(names.tensioner(name, at.key("name"))?)
         }
     })
 }

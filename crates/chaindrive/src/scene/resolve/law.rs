@@ -6,7 +6,7 @@ use chaindrive_contact::elastic::{
 use chaindrive_contact::{Elastic, Elasticity, ParameterError};
 use serde_json::json;
 
-use super::Findings;
+use super::cursor::Cursor;
 use crate::scene::defaults::{self, Default};
 use crate::scene::schema::{Version, Written};
 
@@ -46,29 +46,20 @@ pub(super) fn cylindrical(
 }
 
 /// A spring with a multiple of a stiffness \[N/m\], for a law that a scene leaves open.
-pub(super) fn linear(
-    stiffness: f64,
-    path: &str,
-    default: &Default,
-    findings: &mut Findings<'_>,
-) -> Elastic {
-    let factor = default.value(findings.version);
-    let stiffness = factor * stiffness;
-    let remark = format!("{factor} {}, {}", default.unit, default.basis.remark());
-    let text = json!({"kind": "linear", "stiffness": stiffness});
-    findings.assume(path, text, remark);
+pub(super) fn linear(stiffness: f64, default: &Default, mut at: Cursor<'_, '_>) -> Elastic {
+    let (stiffness, remark) = default.multiple(at.findings.version, stiffness);
+    at.assume(json!({"kind": "linear", "stiffness": stiffness}), remark);
     Elastic::Power(Power::linear(stiffness))
 }
 
-/// The law that a scene describes at `path`.
+/// The law that a scene describes.
 pub(super) fn elastic(
     law: &Written<Specification>,
     pair: Pair,
-    path: &str,
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<Elastic> {
-    let keys = findings.completed(law.keys.clone(), "Elastic", path);
-    let law: Specification = findings.read(keys, path, Specification::check)?;
+    let keys = at.completed(law);
+    let law: Specification = at.read(keys, Specification::check)?;
     match law.given() {
         Given::Curve(law) => Some(law),
         Given::Bodies(CylinderLaw::Hertz, bodies) => {
@@ -76,11 +67,11 @@ pub(super) fn elastic(
                 radius,
                 other,
                 modulus,
-            } = Sides::of(&bodies, pair, path, findings)?;
+            } = Sides::of(&bodies, pair, at)?;
             let other = other.unwrap_or(f64::INFINITY);
             Some(Power::hertz_pair(radius, other, modulus).into())
         }
-        Given::Bodies(kind, bodies) => cylinders(kind, &bodies, pair, path, findings),
+        Given::Bodies(kind, bodies) => cylinders(kind, &bodies, pair, at),
     }
 }
 
@@ -88,18 +79,18 @@ fn cylinders(
     kind: CylinderLaw,
     text: &Surfaces,
     pair: Pair,
-    path: &str,
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<Elastic> {
-    let place = format!("{path}.length");
     let length = match (text.length, pair.length) {
         (Some(length), _) => length,
         (None, Some(length)) => {
-            findings.assume(&place, length, "length of the roller or joint");
+            at.key("length")
+                .assume(length, "length of the roller or joint");
             length
         }
         (None, None) => {
-            findings.refuse_once(&place, "missing", "give the length of the contact");
+            at.key("length")
+                .refuse_once("missing", "give the length of the contact");
             return None;
         }
     };
@@ -107,7 +98,7 @@ fn cylinders(
         radius,
         other,
         modulus,
-    } = Sides::of(text, pair, path, findings)?;
+    } = Sides::of(text, pair, at.again())?;
     if kind == CylinderLaw::Johnson {
         return Some(Elastic::Johnson(match (text.clearance, other) {
             (Some(clearance), _) => Johnson::internal(clearance, 0.0, length, modulus),
@@ -137,7 +128,7 @@ fn cylinders(
                 _ => "clearance",
             };
             let message = format!("{}, must be {}", error.value, error.allowed);
-            findings.refuse_once(&format!("{path}.{key}"), message, "or take another law");
+            at.key(key).refuse_once(message, "or take another law");
             None
         }
     }
@@ -151,7 +142,7 @@ struct Sides {
 }
 
 impl Sides {
-    fn of(text: &Surfaces, pair: Pair, path: &str, findings: &mut Findings<'_>) -> Option<Self> {
+    fn of(text: &Surfaces, pair: Pair, mut at: Cursor<'_, '_>) -> Option<Self> {
         let body = Elasticity {
             modulus: text.modulus,
             poisson: text.poisson,
@@ -165,7 +156,7 @@ impl Sides {
             ] {
                 if given.is_some() {
                     let hint = "leave it out; the radii are those of the chain";
-                    findings.refuse_once(&format!("{path}.{key}"), "not for a joint", hint);
+                    at.key(key).refuse_once("not for a joint", hint);
                     return None;
                 }
             }
@@ -176,7 +167,7 @@ impl Sides {
             });
         }
         let radius = text.radius.unwrap_or_else(|| {
-            findings.assume(&format!("{path}.radius"), pair.radius, "that of the roller");
+            at.key("radius").assume(pair.radius, "that of the roller");
             pair.radius
         });
         let other = text.other_radius;
@@ -185,12 +176,12 @@ impl Sides {
         {
             let message = format!("{other}, must be a radius, or a hollow wider than {radius} [m]");
             let hint = "leave it out for a flat; hollows are negative";
-            findings.refuse_once(&format!("{path}.other_radius"), message, hint);
+            at.key("other_radius").refuse_once(message, hint);
             return None;
         }
         if let (Some(_), Some(_)) = (text.clearance, other) {
             let message = "`other_radius` is given too";
-            findings.refuse_once(&format!("{path}.clearance"), message, "keep one of them");
+            at.key("clearance").refuse_once(message, "keep one of them");
             return None;
         }
         let hollow = text.clearance.map(|clearance| -(radius + clearance));

@@ -49,10 +49,9 @@ pub(super) fn refuse_on_particles(text: &schema::Chain, findings: &mut Findings<
             ("inner.inertia", inertia(text.inner)),
             ("outer.inertia", inertia(text.outer)),
         ];
-        for (key, _) in given.iter().filter(|(_, given)| *given) {
-            let message = "the particle chain has its masses at the joints";
-            findings.refuse_with(&format!("chain.{key}"), message, "leave it out");
-        }
+        let message = "the particle chain has its masses at the joints";
+        let mut at = findings.at("chain");
+        at.refuse_given(given, message, "leave it out");
         if text.ends.is_some() {
             let message = "free rollers of a particle chain need a closed chain";
             let hint = "leave `rollers` out, or take `model = \"clearance-joints\"`";
@@ -67,52 +66,34 @@ pub(super) fn refuse_on_particles(text: &schema::Chain, findings: &mut Findings<
         ("outer", text.outer.is_some()),
         ("roller", text.roller.is_some()),
     ];
-    for (key, _) in given.iter().filter(|(_, given)| *given) {
-        let hint = "take `model = \"clearance-joints\"` or `\"ideal-joints\"`, or `rollers = \"free\"`, or leave it out";
-        let message = "the particle chain has none";
-        findings.refuse_with(&format!("chain.{key}"), message, hint);
-    }
+    let hint = "take `model = \"clearance-joints\"` or `\"ideal-joints\"`, or `rollers = \"free\"`, or leave it out";
+    let message = "the particle chain has none";
+    findings.at("chain").refuse_given(given, message, hint);
 }
 
 /// Keys of the particle chain have no meaning for rigid links.
 fn refuse_of_particles(text: &schema::Chain, findings: &mut Findings<'_>) {
     let scatter = text.scatter.clone().unwrap_or_default();
-    let given = [
-        (
-            "mass",
-            text.mass.is_some(),
-            "give `chain.inner.mass` and `chain.outer.mass`",
-        ),
-        (
-            "masses",
-            text.masses.is_some(),
-            "give `chain.inner.mass` and `chain.outer.mass`",
-        ),
-        (
-            "stiffnesses",
-            text.stiffnesses.is_some(),
-            "give one `stiffness`, or none",
-        ),
-        ("damping", text.damping.is_some(), "only contacts damp them"),
-        (
-            "damping_ratio",
-            text.damping_ratio.is_some(),
-            "only contacts damp them",
-        ),
-        (
-            "scatter.mass",
-            scatter.mass.0 != 0.0,
-            "only lengths can scatter",
-        ),
-        (
-            "scatter.stiffness",
-            scatter.stiffness.0 != 0.0,
-            "only lengths can scatter",
-        ),
+    let mut at = findings.at("chain");
+    let message = "rigid links have none";
+    let masses = [
+        ("mass", text.mass.is_some()),
+        ("masses", text.masses.is_some()),
     ];
-    for (key, _, hint) in given.iter().filter(|(_, given, _)| *given) {
-        findings.refuse_with(&format!("chain.{key}"), "rigid links have none", *hint);
-    }
+    let hint = "give `chain.inner.mass` and `chain.outer.mass`";
+    at.refuse_given(masses, message, hint);
+    let stiffnesses = [("stiffnesses", text.stiffnesses.is_some())];
+    at.refuse_given(stiffnesses, message, "give one `stiffness`, or none");
+    let dampings = [
+        ("damping", text.damping.is_some()),
+        ("damping_ratio", text.damping_ratio.is_some()),
+    ];
+    at.refuse_given(dampings, message, "only contacts damp them");
+    let scattered = [
+        ("scatter.mass", scatter.mass.0 != 0.0),
+        ("scatter.stiffness", scatter.stiffness.0 != 0.0),
+    ];
+    at.refuse_given(scattered, message, "only lengths can scatter");
 }
 
 /// Values that must be there, and what to say where they are not.
@@ -122,7 +103,7 @@ struct Needs<'f, 't> {
 }
 
 impl Needs<'_, '_> {
-    fn value(&mut self, value: Option<f64>, key: &str, what: &str) -> Option<f64> {
+    fn value(&mut self, value: Option<impl Into<f64>>, key: &str, what: &str) -> Option<f64> {
         if value.is_none() {
             let hint = match &self.of_type {
                 Some(name) => {
@@ -133,7 +114,7 @@ impl Needs<'_, '_> {
             self.findings
                 .refuse_with(&format!("chain.{key}"), "missing", hint);
         }
-        value
+        value.map(Into::into)
     }
 }
 
@@ -191,8 +172,8 @@ fn points(
         of_type: text.of_type.clone(),
     };
     let mut mass = |text: Option<schema::Link>, name: &str| {
-        let mass = text.and_then(|link| link.mass).map(|mass| mass.0);
         let what = format!("mass of an {name} link");
+        let mass = text.and_then(|link| link.mass);
         needs.value(mass, &format!("{name}.mass"), &what)
     };
     let (inner, outer) = (mass(text.inner, "inner"), mass(text.outer, "outer"));
@@ -217,18 +198,10 @@ fn points(
 
 fn link(text: Option<schema::Link>, name: &str, needs: &mut Needs<'_, '_>) -> Option<LinkBody> {
     let text = text.unwrap_or_default();
-    let mass = text.mass.map(|mass| mass.0);
-    let inertia = text.inertia.map(|inertia| inertia.0);
-    let mass = needs.value(
-        mass,
-        &format!("{name}.mass"),
-        &format!("mass of an {name} link"),
-    );
-    let inertia = needs.value(
-        inertia,
-        &format!("{name}.inertia"),
-        &format!("moment of inertia of an {name} link about its centre of mass"),
-    );
+    let what = format!("mass of an {name} link");
+    let mass = needs.value(text.mass, &format!("{name}.mass"), &what);
+    let what = format!("moment of inertia of an {name} link about its centre of mass");
+    let inertia = needs.value(text.inertia, &format!("{name}.inertia"), &what);
     Some(LinkBody {
         mass: mass?,
         inertia: inertia?,
@@ -249,7 +222,6 @@ fn rollers(
     needs: &mut Needs<'_, '_>,
 ) -> Option<RollerModel> {
     let roller = text.roller.clone().unwrap_or_default();
-    let mass = roller.mass.map(|mass| mass.0);
     let model = text.rollers.unwrap_or_else(|| {
         let findings = &mut *needs.findings;
         if touches_nothing(scene) && text.roller.is_none() {
@@ -262,7 +234,7 @@ fn rollers(
     });
     match model {
         Rollers::Lumped => {
-            let mass = needs.value(mass, "roller.mass", "mass of a roller")?;
+            let mass = needs.value(roller.mass, "roller.mass", "mass of a roller")?;
             Some(RollerModel::Lumped { mass })
         }
         Rollers::None => {
@@ -280,14 +252,13 @@ fn rollers(
             Some(RollerModel::Bush)
         }
         Rollers::Free => {
-            let mass = needs.value(mass, "roller.mass", "mass of a roller");
-            let inertia = roller.inertia.map(|inertia| inertia.0);
-            let inertia = needs.value(inertia, "roller.inertia", "moment of inertia of a roller");
+            let mass = needs.value(roller.mass, "roller.mass", "mass of a roller");
+            let what = "moment of inertia of a roller";
+            let inertia = needs.value(roller.inertia, "roller.inertia", what);
             let bush = roller.bush_diameter.map(|diameter| 0.5 * diameter.0);
             let bush = needs.value(bush, "roller.bush_diameter", "outer diameter of the bush");
-            let clearance = roller.clearance.map(|clearance| clearance.0);
             let what = "radial clearance between bush and roller, such as \"0.05 mm\"";
-            let clearance = needs.value(clearance, "roller.clearance", what);
+            let clearance = needs.value(roller.clearance, "roller.clearance", what);
             let (bush, clearance) = (bush?, clearance?);
             let bore = bush + clearance;
             if bore >= 0.5 * roller_diameter {
@@ -339,14 +310,13 @@ fn joint(
     let joint = text.joint.clone().unwrap_or_default();
     let pin = joint.pin_diameter.map(|diameter| 0.5 * diameter.0);
     let pin = needs.value(pin, "joint.pin_diameter", "diameter of the pin");
-    let clearance = joint.clearance.map(|clearance| clearance.0);
     let what = "radial clearance between pin and bush, such as \"0.025 mm\"";
-    let clearance = needs.value(clearance, "joint.clearance", what);
+    let clearance = needs.value(joint.clearance, "joint.clearance", what);
     let (pin, clearance) = (pin?, clearance?);
     let bore = pin + clearance;
     // What surrounds the bore: the bush, and at the latest the roller.
     let bush = text.roller.as_ref().and_then(|roller| roller.bush_diameter);
-    let bush = bush.map_or(roller_diameter, |diameter| diameter.0);
+    let bush = bush.map_or(roller_diameter, f64::from);
     if 2.0 * bore >= bush {
         let message = format!("{}, must be less", 2.0 * pin);
         let hint = format!("the bush around it has a diameter of {bush} m");
@@ -358,7 +328,7 @@ fn joint(
     let pair = Pair {
         radius: pin,
         bore: Some(bore),
-        length: joint.length.map(|length| length.0),
+        length: joint.length.map(f64::from),
     };
     let said = contact::Said {
         own: &joint.contact,
@@ -366,7 +336,7 @@ fn joint(
         common: &scene.contact.joints,
         fallback: contact::JOINTS,
     };
-    let known = Joints::new(scene, text, text.stiffness.map(|stiffness| stiffness.0));
+    let known = Joints::new(scene, text, text.stiffness.map(f64::from));
     // Particles have their friction beside the contact, and half of their plates in the links.
     let points = text.is_of_points();
     let friction = if points {
@@ -497,7 +467,7 @@ fn laying_stiffness(
         .length
         .or(touches_nothing(scene).then_some(2.0 * pair.radius));
     let teeth = match (&scene.contact.teeth.law, length) {
-        (Some(law), _) => elastic(law, pair, "contact.teeth.law", findings)?,
+        (Some(law), _) => elastic(law, pair, findings.at("contact.teeth.law"))?,
         (None, Some(length)) => {
             let steel = steel(findings.version);
             Elastic::Johnson(Johnson::flat(pair.radius, length, steel.composite(steel)))
@@ -510,7 +480,8 @@ fn laying_stiffness(
     };
     let tooth = teeth.stiffness(PRESSED);
     let default = &defaults::LAYING_STIFFNESS;
-    Some(findings.or_multiple(None, "chain.stiffness", default, tooth))
+    let mut at = findings.at("chain.stiffness");
+    Some(at.or_multiple(None::<f64>, default, tooth))
 }
 
 /// Masses of the rollers while the chain is laid \[kg\]: every link halved between its ends.

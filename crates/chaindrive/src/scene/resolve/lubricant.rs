@@ -4,6 +4,7 @@ use chaindrive_contact::Lubricant;
 use chaindrive_mechanics::OilSupply;
 
 use super::Findings;
+use super::cursor::Cursor;
 use crate::scene::defaults;
 use crate::scene::schema::SceneText;
 use crate::scene::suggest::one_of;
@@ -33,21 +34,19 @@ pub(super) fn resolve(scene: &SceneText, findings: &mut Findings<'_>) -> Option<
             None
         }
     };
-    let mut or_default = |given: Option<f64>, key: &str, default| {
-        findings.or_default(given, &format!("lubricant.{key}"), default)
-    };
-    let index = text.viscosity_index.map(|it| it.0);
-    let density = text.density.map(|it| it.0);
+    let mut at = findings.at("lubricant");
+    let index = text.viscosity_index;
+    let index = at
+        .key("viscosity_index")
+        .or(index, &defaults::VISCOSITY_INDEX);
+    let density = at.key("density").or(text.density, &defaults::OIL_DENSITY);
     let lubricant = Lubricant {
-        viscosity_index: or_default(index, "viscosity_index", &defaults::VISCOSITY_INDEX),
-        density: or_default(density, "density", &defaults::OIL_DENSITY),
+        viscosity_index: index,
+        density,
         viscosity_40: viscosity_40?,
         temperature: text.temperature.0,
     };
-    if let Err(error) = lubricant.check() {
-        findings.refuse_parameter("lubricant", &error);
-        return None;
-    }
+    at.sound(lubricant.check())?;
     Some(OilSupply {
         lubricant,
         used_by: Vec::new(),
@@ -56,36 +55,29 @@ pub(super) fn resolve(scene: &SceneText, findings: &mut Findings<'_>) -> Option<
 
 impl Findings<'_> {
     /// The oil, for a parameter at `path` that the scene leaves open; none where no oil is described.
-    pub(super) fn lubricant(&mut self, path: &str) -> Option<Lubricant> {
-        let (place, _) = self.tree.locate(&self.at(path));
+    fn lubricant(&mut self, path: &str) -> Option<Lubricant> {
+        let (place, _) = self.tree.locate(&self.of_chain(path));
         let oil = self.oil.as_mut()?;
         if !oil.used_by.contains(&place) {
             oil.used_by.push(place);
         }
         Some(oil.lubricant)
     }
+}
 
-    /// Kinematic viscosity of the oil \[m²/s\], for a parameter at `path`; refused where no oil is described.
-    pub(super) fn oil_viscosity(&mut self, path: &str) -> Option<f64> {
-        self.of_oil(path, Lubricant::kinematic_viscosity)
-    }
-
-    /// Its dynamic viscosity \[Pa s\].
-    pub(super) fn oil_dynamic_viscosity(&mut self, path: &str) -> Option<f64> {
-        self.of_oil(path, Lubricant::dynamic_viscosity)
-    }
-
-    fn of_oil(&mut self, path: &str, viscosity: fn(&Lubricant) -> f64) -> Option<f64> {
-        let Some(lubricant) = self.lubricant(path) else {
+impl Cursor<'_, '_> {
+    /// A viscosity of the oil, for the parameter here; refused where no oil is described.
+    pub(super) fn of_oil(&mut self, viscosity: fn(&Lubricant) -> f64) -> Option<f64> {
+        let Some(lubricant) = self.findings.lubricant(&self.path) else {
             // A lubricant that is refused has its own message.
-            if self.tree.find("lubricant").is_none() {
+            if self.findings.tree.find("lubricant").is_none() {
                 let hint = "give it, or a `lubricant` for the whole drive";
-                self.refuse_with(path, "missing", hint);
+                self.refuse("missing", hint);
             }
             return None;
         };
         let viscosity = viscosity(&lubricant);
-        self.assume(path, viscosity, "of the lubricant at its temperature");
+        self.assume(viscosity, "of the lubricant at its temperature");
         Some(viscosity)
     }
 }

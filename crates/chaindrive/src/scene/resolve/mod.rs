@@ -7,6 +7,7 @@ mod chain;
 mod chains;
 mod contact;
 mod count;
+mod cursor;
 mod ends;
 mod film;
 mod flank;
@@ -35,18 +36,17 @@ use std::collections::{HashMap, HashSet};
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_mechanics::{Drive, DriveError, OilSupply, Parts, PlacedChain};
-use serde::Serialize;
 use serde_json::{Value as Json, json};
 
 pub use catalogue::chain_named;
+use cursor::Cursor;
 use on_span::Passing;
 
-use super::defaults::{self, Choice, Default};
+use super::defaults;
 use super::error::{Problem, Problems};
 use super::schema::{Contact, SceneText, Version};
-use super::suggest::one_of;
 use super::tree::{Node, Value};
-use chaindrive_quantities::{Length, Ratio};
+use chaindrive_quantities::Length;
 
 /// Builds the drive of a scene, or collects everything that prevents it.
 pub(crate) fn drive(scene: &SceneText, tree: &Node) -> Result<(Drive, Vec<Assumption>), Problems> {
@@ -108,10 +108,9 @@ pub(crate) fn friction(
     tree: &Node,
 ) -> Result<chaindrive_contact::Friction, Problems> {
     let mut findings = Findings::new(tree, Version::default());
-    let law = contact
-        .friction
-        .as_ref()
-        .and_then(|text| contact::friction(text, "", contact::Journal::default(), &mut findings));
+    let journal = contact::Journal::default();
+    let text = contact.friction.as_ref();
+    let law = text.and_then(|text| contact::friction(text, journal, findings.at("friction")));
     law.ok_or(findings.problems)
 }
 
@@ -237,8 +236,8 @@ impl<'s> Names<'s> {
     }
 
     /// Index of the tensioner of this name.
-    fn tensioner(&self, name: &str, path: &str, findings: &mut Findings<'_>) -> Option<usize> {
-        findings.lookup(&self.tensioners, "tensioner", name, path)
+    fn tensioner(&self, name: &str, mut at: Cursor<'_, '_>) -> Option<usize> {
+        at.lookup(&self.tensioners, "tensioner", name)
     }
 }
 
@@ -293,13 +292,13 @@ impl<'t> Findings<'t> {
 
 impl Findings<'_> {
     /// A path in the scene, with that of the chain in work.
-    fn at(&self, path: &str) -> String {
-        let of_chain = ["chain", "route"].iter().any(|key| {
+    fn of_chain(&self, path: &str) -> String {
+        let within = ["chain", "route"].iter().any(|key| {
             let rest = path.strip_prefix(key);
             rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
         });
         match self.chain {
-            Some(index) if of_chain => {
+            Some(index) if within => {
                 let rest = path.strip_prefix("chain").unwrap_or(path);
                 let dot = if rest.starts_with("route") { "." } else { "" };
                 format!("chains[{index}]{dot}{rest}")
@@ -310,7 +309,7 @@ impl Findings<'_> {
 
     /// Notes what is taken for an absent value; several bodies may share it.
     fn assume(&mut self, path: &str, value: impl Into<Json>, remark: impl Into<String>) {
-        let (path, value) = (self.at(path), value.into());
+        let (path, value) = (self.of_chain(path), value.into());
         match self.assumed.get_mut(&path) {
             None => {
                 self.assumed.insert(path.clone(), Some(value.clone()));
@@ -344,66 +343,28 @@ impl Findings<'_> {
         self.assume(path, json!({"kind": kind}), "not given");
     }
 
-    /// A number, or its default.
-    fn or_default(&mut self, given: Option<f64>, path: &str, default: &Default) -> f64 {
-        given.unwrap_or_else(|| {
-            let value = default.value(self.version);
-            self.assume(path, value, default.basis.remark());
-            value
-        })
-    }
-
-    /// A choice, or the default.
-    fn or_chosen<T: Copy + Serialize>(
-        &mut self,
-        given: Option<T>,
-        path: &str,
-        choice: &Choice<T>,
-    ) -> T {
-        given.unwrap_or_else(|| {
-            let chosen = choice.value(self.version);
-            self.assume(path, json!(chosen), choice.basis.remark());
-            chosen
-        })
-    }
-
-    /// A number, or a multiple of another that has its unit.
-    fn or_multiple(&mut self, given: Option<f64>, path: &str, default: &Default, of: f64) -> f64 {
-        given.unwrap_or_else(|| {
-            let factor = default.value(self.version);
-            let remark = format!("{factor} {}, {}", default.unit, default.basis.remark());
-            self.assume(path, factor * of, remark);
-            factor * of
-        })
-    }
-
     fn refuse(&mut self, path: &str, message: impl Into<String>) {
-        let path = &self.at(path);
-        self.problems.push_with(|| {
-            let (path, place) = self.tree.locate(path);
-            Problem::new(&path, place, message)
-        });
+        self.refuse_with(path, message, "");
     }
 
+    /// Refuses the value at a path, with a way out; an empty hint is none.
     fn refuse_with(&mut self, path: &str, message: impl Into<String>, hint: impl Into<String>) {
-        let path = &self.at(path);
+        let path = &self.of_chain(path);
         self.problems.push_with(|| {
             let (path, place) = self.tree.locate(path);
-            Problem::new(&path, place, message).hint(hint)
+            let (problem, hint) = (Problem::new(&path, place, message), hint.into());
+            if hint.is_empty() {
+                problem
+            } else {
+                problem.hint(hint)
+            }
         });
     }
 
     /// Refuses a value that several bodies share, once.
-    ///
-    /// An empty hint is none.
     fn refuse_once(&mut self, path: &str, message: impl Into<String>, hint: &str) {
-        let (place, _) = self.tree.locate(&self.at(path));
-        if self.problems.speak_of(&place) {
-            return;
-        }
-        if hint.is_empty() {
-            self.refuse(path, message);
-        } else {
+        let (place, _) = self.tree.locate(&self.of_chain(path));
+        if !self.problems.speak_of(&place) {
             self.refuse_with(path, message, hint);
         }
     }
@@ -413,18 +374,6 @@ impl Findings<'_> {
         result
             .map_err(|error| self.refuse(path, error.to_string()))
             .ok()
-    }
-
-    fn lookup(&mut self, names: &[&str], kind: &str, name: &str, path: &str) -> Option<usize> {
-        let found = names.iter().position(|known| *known == name);
-        if found.is_none() {
-            self.refuse_with(
-                path,
-                format!("no {kind} is named `{name}`"),
-                one_of(name, names),
-            );
-        }
-        found
     }
 
     fn unique<'n>(&mut self, names: impl Iterator<Item = (String, &'n str)>) {
@@ -449,15 +398,6 @@ impl Findings<'_> {
             }
             seen.insert(name);
         }
-    }
-
-    /// A direction of any length as a unit vector.
-    fn direction(&mut self, path: &str, [x, y]: [Ratio; 2]) -> Option<Vector> {
-        let direction = Vector::new(x.0, y.0).try_normalize(f64::MIN_POSITIVE);
-        if direction.is_none() {
-            self.refuse(path, "a direction must not be zero");
-        }
-        direction.filter(|unit| unit.iter().all(|c| c.is_finite()))
     }
 
     fn drive_error(&mut self, error: DriveError) {

@@ -4,64 +4,64 @@ use std::f64::consts::TAU;
 
 use chaindrive_mechanics::{Argument, DriveError, Harmonic, Motion, Order, Table, Torque};
 
-use super::Findings;
+use super::cursor::Cursor;
 use super::ends::Ends;
 use crate::scene::schema::{self, SceneText};
 use crate::scene::suggest::one_of;
 use chaindrive_quantities::{Angle, AngularSpeed, Length, Speed};
 
-/// A displacement.
-pub(super) fn shift(
-    text: &schema::Motion<Length, Speed>,
-    path: &str,
+/// Displacements along x and y.
+pub(super) fn shifts(
+    [x, y]: [&schema::Motion<Length, Speed>; 2],
     scene: &SceneText,
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
+) -> Option<[Motion; 2]> {
+    let x = shift(x, scene, at.key("x"));
+    let y = shift(y, scene, at.key("y"));
+    Some([x?, y?])
+}
+
+fn shift(
+    text: &schema::Motion<Length, Speed>,
+    scene: &SceneText,
+    mut at: Cursor<'_, '_>,
 ) -> Option<Motion> {
     let turning = match text {
-        schema::Motion::Orders { of: Some(of), .. } => mean_speed(of, path, scene, findings)?,
+        schema::Motion::Orders { of: Some(of), .. } => mean_speed(of, scene, at.key("of"))?,
         schema::Motion::Orders { of: None, .. } => {
             let hint = "name the shaft whose turns count";
-            findings.refuse_with(&format!("{path}.of"), "missing", hint);
+            at.key("of").refuse("missing", hint);
             return None;
         }
         _ => 0.0,
     };
-    let position = |length: Length| length.0;
-    resolve(text, position, |speed| speed.0, turning, path, findings)
+    resolve(text, turning, at)
 }
 
 /// A rotation.
 pub(super) fn turn(
     text: &schema::Motion<Angle, AngularSpeed>,
-    path: &str,
     scene: &SceneText,
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<Motion> {
     let turning = match text {
-        schema::Motion::Orders { of: Some(of), .. } => mean_speed(of, path, scene, findings)?,
+        schema::Motion::Orders { of: Some(of), .. } => mean_speed(of, scene, at.key("of"))?,
         schema::Motion::Orders { speed, .. } => {
-            let own = speed.map(|speed| speed.0).filter(|speed| *speed != 0.0);
+            let own = speed.map(f64::from).filter(|speed| *speed != 0.0);
             if own.is_none() {
                 let hint = "orders count turns: give the mean speed, or in `of` the name of a shaft that has one";
-                findings.refuse_with(&format!("{path}.speed"), "no mean speed", hint);
+                at.key("speed").refuse("no mean speed", hint);
             }
             own?
         }
         _ => 0.0,
     };
-    let position = |angle: Angle| angle.0;
-    resolve(text, position, |speed| speed.0, turning, path, findings)
+    resolve(text, turning, at)
 }
 
 /// Mean speed \[rad/s\] of the shaft that a motion by orders names.
-fn mean_speed(
-    name: &str,
-    path: &str,
-    scene: &SceneText,
-    findings: &mut Findings<'_>,
-) -> Option<f64> {
+fn mean_speed(name: &str, scene: &SceneText, mut at: Cursor<'_, '_>) -> Option<f64> {
     let all = mean_speeds(scene);
-    let path = format!("{path}.of");
     match all.iter().find(|(known, _)| *known == name) {
         Some((_, Some(speed))) => Some(*speed),
         Some((_, None)) => {
@@ -72,13 +72,13 @@ fn mean_speed(
                 known => format!("take one whose motion has: {}", known.join(", ")),
             };
             let message = format!("`{name}` has no mean speed that is given");
-            findings.refuse_with(&path, message, hint);
+            at.refuse(message, hint);
             None
         }
         None => {
             let known: Vec<&str> = all.iter().map(|(known, _)| *known).collect();
             let message = format!("no shaft or sprocket is named `{name}`");
-            findings.refuse_with(&path, message, one_of(name, &known));
+            at.refuse(message, one_of(name, &known));
             None
         }
     }
@@ -136,56 +136,54 @@ fn speed_given(motion: Option<&schema::Motion<Angle, AngularSpeed>>) -> Option<f
 }
 
 /// `turning`: mean speed \[rad/s\] of the shaft whose turns orders count.
-fn resolve<P: Copy, R: Copy>(
+fn resolve<P: Copy + Into<f64>, R: Copy + Into<f64>>(
     text: &schema::Motion<P, R>,
-    position: impl Fn(P) -> f64,
-    rate: impl Fn(R) -> f64,
     turning: f64,
-    path: &str,
-    findings: &mut Findings<'_>,
+    at: Cursor<'_, '_>,
 ) -> Option<Motion> {
+    let rate = |speed: &Option<R>| speed.map_or(0.0, Into::into);
     Some(match text {
         schema::Motion::Held => Motion::Held,
-        schema::Motion::Constant { speed } => Motion::Constant { rate: rate(*speed) },
+        schema::Motion::Constant { speed } => Motion::Constant {
+            rate: (*speed).into(),
+        },
         schema::Motion::Ramp {
             from,
             to,
             start,
             duration,
         } => Motion::Ramp {
-            from: rate(*from),
-            to: rate(*to),
+            from: (*from).into(),
+            to: (*to).into(),
             start: start.0,
             duration: duration.0,
         },
         schema::Motion::Harmonics { speed, terms } => Motion::Harmonics {
-            rate: speed.map_or(0.0, &rate),
+            rate: rate(speed),
             terms: terms
                 .iter()
                 .map(|term| Harmonic {
-                    amplitude: position(term.amplitude),
+                    amplitude: term.amplitude.into(),
                     frequency: term.frequency.0,
                     phase: term.phase.0,
                 })
                 .collect(),
         },
         schema::Motion::Orders { speed, terms, .. } => Motion::Orders {
-            rate: speed.map_or(0.0, &rate),
+            rate: rate(speed),
             turning,
-            terms: orders(terms, position),
+            terms: orders(terms),
             since: 0.0,
         },
         schema::Motion::Table { times, values } => {
-            let times = times.iter().map(|time| time.0).collect();
-            let values = values.iter().map(|value| position(*value)).collect();
-            Motion::Table(table(times, values, path, "times", findings)?)
+            Motion::Table(table(times, values, "times", at)?)
         }
     })
 }
 
-fn orders<A: Copy>(terms: &[schema::OrderTerm<A>], amplitude: impl Fn(A) -> f64) -> Vec<Order> {
+fn orders<A: Copy + Into<f64>>(terms: &[schema::OrderTerm<A>]) -> Vec<Order> {
     let order = |term: &schema::OrderTerm<A>| Order {
-        amplitude: amplitude(term.amplitude),
+        amplitude: term.amplitude.into(),
         order: term.order.0,
         phase: term.phase.0,
     };
@@ -195,35 +193,23 @@ fn orders<A: Copy>(terms: &[schema::OrderTerm<A>], amplitude: impl Fn(A) -> f64)
 /// Torques of one list, each with its place.
 pub(super) fn torques(
     list: &[schema::Torque],
-    path: &str,
     shafts: &Ends<'_>,
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<Vec<Torque>> {
     let torques = list.iter().enumerate();
     let torques: Vec<_> = torques
-        .map(|(i, text)| torque(text, &format!("{path}[{i}]"), shafts, findings))
+        .map(|(i, text)| torque(text, shafts, at.entry(i)))
         .collect();
     torques.into_iter().collect()
 }
 
-fn torque(
-    text: &schema::Torque,
-    path: &str,
-    shafts: &Ends<'_>,
-    findings: &mut Findings<'_>,
-) -> Option<Torque> {
+fn torque(text: &schema::Torque, shafts: &Ends<'_>, mut at: Cursor<'_, '_>) -> Option<Torque> {
     let of = match text {
         schema::Torque::Orders { of: Some(of), .. }
-        | schema::Torque::AngleTable { of: Some(of), .. } => {
-            Some(shafts.one(of, &format!("{path}.of"), findings)?)
-        }
+        | schema::Torque::AngleTable { of: Some(of), .. } => Some(shafts.one(of, at.key("of"))?),
         _ => None,
     };
-    let mut over = |over, arguments: Vec<f64>, torques: &[chaindrive_quantities::Torque], key| {
-        let values = torques.iter().map(|torque| torque.0).collect();
-        let curve = table(arguments, values, path, key, findings)?;
-        Some(Torque::Table { over, curve })
-    };
+    let over = |over, curve: Option<Table>| curve.map(|curve| Torque::Table { over, curve });
     match text {
         schema::Torque::Constant { torque } => Some(Torque::Constant { torque: torque.0 }),
         schema::Torque::Ramp {
@@ -253,14 +239,14 @@ fn torque(
         }),
         schema::Torque::Orders { terms, .. } => Some(Torque::Orders {
             of,
-            terms: orders(terms, |torque| torque.0),
+            terms: orders(terms),
         }),
-        schema::Torque::TimeTable { times, torques } => over(
-            Argument::Time,
-            times.iter().map(|t| t.0).collect(),
-            torques,
-            "times",
-        ),
+        schema::Torque::TimeTable { times, torques } => {
+            over(Argument::Time, table(times, torques, "times", at))
+        }
+        schema::Torque::SpeedTable { speeds, torques } => {
+            over(Argument::Speed, table(speeds, torques, "speeds", at))
+        }
         schema::Torque::AngleTable {
             turns,
             angles,
@@ -268,10 +254,11 @@ fn torque(
             ..
         } => {
             let turns = turns.0;
-            let angles: Vec<f64> = angles.iter().map(|angle| angle.0).collect();
-            let least = angles.iter().copied().fold(f64::INFINITY, f64::min);
-            let most = angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let resolved = over(Argument::Angle { of, turns }, angles, torques, "angles")?;
+            let curve = table(angles, torques, "angles", at.again());
+            let resolved = over(Argument::Angle { of, turns }, curve)?;
+            let angles = || angles.iter().map(|angle| angle.0);
+            let least = angles().fold(f64::INFINITY, f64::min);
+            let most = angles().fold(f64::NEG_INFINITY, f64::max);
             if least > 1e-9 || most < f64::from(turns) * TAU - 1e-9 {
                 let of_turns = if turns == 1 { "turn" } else { "two turns" };
                 let message = format!(
@@ -281,7 +268,7 @@ fn torque(
                 );
                 let end = 360 * turns;
                 let hint = format!("let it run from 0 to {end} deg, with the same torque at both");
-                findings.refuse_with(&format!("{path}.angles"), message, hint);
+                at.key("angles").refuse(message, hint);
                 return None;
             }
             if let [first, .., last] = torques.as_slice()
@@ -292,37 +279,25 @@ fn torque(
                     last.0, first.0
                 );
                 let hint = "give the same torque at both ends; a quick change takes two points close together";
-                findings.refuse_with(&format!("{path}.torques"), message, hint);
+                at.key("torques").refuse(message, hint);
                 return None;
             }
             Some(resolved)
         }
-        schema::Torque::SpeedTable { speeds, torques } => over(
-            Argument::Speed,
-            speeds.iter().map(|s| s.0).collect(),
-            torques,
-            "speeds",
-        ),
     }
 }
 
-fn table(
-    arguments: Vec<f64>,
-    values: Vec<f64>,
-    path: &str,
+fn table<A: Copy + Into<f64>, V: Copy + Into<f64>>(
+    arguments: &[A],
+    values: &[V],
     key: &str,
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<Table> {
-    let path = format!("{path}.{key}");
-    match Table::new(arguments, values) {
-        Ok(table) => Some(table),
-        Err(DriveError::Table { problem }) => {
-            findings.refuse(&path, problem.replace("times", key));
-            None
-        }
-        Err(error) => {
-            findings.refuse(&path, error.to_string());
-            None
-        }
-    }
+    let arguments = arguments.iter().map(|it| (*it).into()).collect();
+    let values = values.iter().map(|it| (*it).into()).collect();
+    let table = Table::new(arguments, values).map_err(|error| match error {
+        DriveError::Table { problem } => problem.replace("times", key),
+        error => error.to_string(),
+    });
+    at.key(key).keep(table)
 }

@@ -76,7 +76,7 @@ impl<'s> Passing<'s> {
             Face::OnSpan { bow: given, .. } => {
                 let open =
                     || format!("the bow of `{name}` is open: give it, or the number of links");
-                let bow = given.map(|bow| bow.0).or(bow).ok_or_else(open)?;
+                let bow = given.map(f64::from).or(bow).ok_or_else(open)?;
                 let curved = curved(guide, bow, self.size).ok_or_else(neither)?;
                 Ok(Station::Guide(curved))
             }

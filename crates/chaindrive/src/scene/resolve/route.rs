@@ -4,6 +4,7 @@ use chaindrive_geometry::Vector;
 use chaindrive_mechanics::{Adjust, Chain, Fit, Layout, Stop, Tighten};
 
 use super::chains::Described;
+use super::cursor::Cursor;
 use super::{Findings, Names, housing, start};
 use crate::scene::defaults;
 use crate::scene::schema::{self, Route, SceneText};
@@ -56,25 +57,24 @@ pub(super) fn layout(
             findings.refuse_with("route.sag", "`route.pretension` is given too", hint);
         }
     }
-    let phase = route.phase.map(|phase| phase.0);
     let stops = stops?;
     let slack = slack_span(route, &stops, names, findings);
     Some(Layout::Route {
         stops,
-        start: findings.or_chosen(route.start, "route.start", &defaults::SPAN_START),
-        phase: findings.or_default(phase, "route.phase", &defaults::PHASE),
+        start: findings
+            .at("route.start")
+            .or_chosen(route.start, &defaults::SPAN_START),
+        phase: findings.at("route.phase").or(route.phase, &defaults::PHASE),
         fit: Fit {
             adjust,
             growth: housing::growth(scene, findings),
             pretension: route.pretension.0,
             tighten,
-            sag: route.sag.map(|sag| sag.0),
+            sag: route.sag.map(f64::from),
             slack,
-            at: findings.or_chosen(
-                route.pretension_at,
-                "route.pretension_at",
-                &defaults::PRETENSION_AT,
-            ),
+            at: findings
+                .at("route.pretension_at")
+                .or_chosen(route.pretension_at, &defaults::PRETENSION_AT),
         },
     })
 }
@@ -127,7 +127,7 @@ fn stops(
     let mut found = Vec::new();
     let mut complete = true;
     for (i, name) in stops.iter().enumerate() {
-        let path = format!("route.stops[{i}]");
+        let mut at = findings.at(format!("route.stops[{i}]"));
         let sprocket = names.sprockets.iter().position(|known| known == name);
         let guide = || names.guides.iter().position(|known| known == name);
         let stop = sprocket
@@ -141,19 +141,16 @@ fn stops(
                 .copied()
                 .collect();
             let message = format!("no sprocket or guide is named `{name}`");
-            findings.refuse_with(&path, message, one_of(name, &known));
+            at.refuse(message, one_of(name, &known));
             complete = false;
             continue;
         };
         if found.contains(&stop) {
-            findings.refuse_with(
-                &path,
-                format!("`{name}` stands twice"),
-                "the chain passes it once",
-            );
+            let message = format!("`{name}` stands twice");
+            at.refuse(message, "the chain passes it once");
         } else if i == 0 && sprocket.is_none() {
             let hint = "begin the list with any of the sprockets";
-            findings.refuse_with(&path, "the first stop must be a sprocket", hint);
+            at.refuse("the first stop must be a sprocket", hint);
         }
         found.push(stop);
     }
@@ -170,20 +167,20 @@ fn adjust(
     names: &Names<'_>,
     findings: &mut Findings<'_>,
 ) -> Option<Adjust> {
-    let path = "route.adjust.name";
-    let tensioner = |name: &str, kind: &str, findings: &mut Findings<'_>| {
-        let index = names.tensioner(name, path, findings)?;
+    let mut at = findings.at("route.adjust");
+    let tensioner = |name: &str, kind: &str, mut at: Cursor<'_, '_>| {
+        let index = names.tensioner(name, at.again())?;
         let other = scene.tensioners[index].carrier.word("kind");
         if other != kind {
             let hint = format!("take `kind = \"{other}\"`");
-            findings.refuse_with(path, format!("`{name}` is of the kind {other}"), hint);
+            at.refuse(format!("`{name}` is of the kind {other}"), hint);
             return None;
         }
         Some(index)
     };
     match &route.adjust {
         None => {
-            findings.assume_kind("route.adjust", "nothing");
+            at.assume_kind("nothing");
             Some(Adjust::Nothing)
         }
         Some(schema::Adjust::Nothing) => Some(Adjust::Nothing),
@@ -192,8 +189,8 @@ fn adjust(
             direction,
             within,
         }) => {
-            let sprocket = findings.lookup(&names.sprockets, "sprocket", name, path);
-            let direction = findings.direction("route.adjust.direction", *direction);
+            let sprocket = at.key("name").lookup(&names.sprockets, "sprocket", name);
+            let direction = at.key("direction").direction(*direction);
             Some(Adjust::Sprocket {
                 sprocket: sprocket?,
                 direction: direction?,
@@ -201,11 +198,11 @@ fn adjust(
             })
         }
         Some(schema::Adjust::Slider { name, within }) => Some(Adjust::Tensioner {
-            tensioner: tensioner(name, "slider", findings)?,
+            tensioner: tensioner(name, "slider", at.key("name"))?,
             within: within.0,
         }),
         Some(schema::Adjust::Arm { name, within }) => Some(Adjust::Tensioner {
-            tensioner: tensioner(name, "arm", findings)?,
+            tensioner: tensioner(name, "arm", at.key("name"))?,
             within: within.0,
         }),
     }

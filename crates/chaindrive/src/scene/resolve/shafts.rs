@@ -2,6 +2,7 @@
 
 use chaindrive_mechanics::{Coupling, GearPair, Rotation, Shaft, StartSpeed};
 
+use super::cursor::Cursor;
 use super::ends::Ends;
 use super::{Findings, Names, loss, motion};
 use crate::scene::schema::{self, SceneText};
@@ -39,52 +40,48 @@ pub(super) fn resolve(
     };
     let mut shafts = Vec::new();
     for (i, (text, carrier)) in scene.sprockets.iter().zip(&carriers).enumerate() {
-        let path = format!("sprockets[{i}]");
+        let mut at = findings.at(format!("sprockets[{i}]"));
         if let Some(shaft) = carrier {
-            refuse_own_turning(text, &path, &scene.shafts[*shaft].name, findings);
+            refuse_own_turning(text, &scene.shafts[*shaft].name, at);
             continue;
         }
         if text.motion.is_none() && text.inertia.is_none() {
             let hint =
                 "give the moment of inertia of what turns with the sprocket, or its `motion`";
-            findings.refuse_with(&format!("{path}.inertia"), "missing", hint);
+            at.key("inertia").refuse("missing", hint);
         }
         let turned = (&text.motion, &text.drive, &text.load, text.speed);
-        shafts.push(rotation(turned, &path, (scene, &ends), findings).map(Shaft::of_one));
+        shafts.push(rotation(turned, (scene, &ends), at).map(Shaft::of_one));
     }
     for (i, text) in scene.shafts.iter().enumerate() {
-        let path = format!("shafts[{i}]");
+        let mut at = findings.at(format!("shafts[{i}]"));
         let turned = (&text.motion, &text.drive, &text.load, text.speed);
-        let rotation = rotation(turned, &path, (scene, &ends), findings);
-        let loss = loss::resolve(text.bearing.as_ref(), text.drag.as_ref(), &path, findings);
+        let rotation = rotation(turned, (scene, &ends), at.again());
+        let loss = loss::resolve(text.bearing.as_ref(), text.drag.as_ref(), at);
         shafts.push(rotation.zip(loss).map(|(rotation, loss)| Shaft {
             name: Some(text.name.clone()),
             rotation,
-            inertia: text.inertia.map_or(0.0, |inertia| inertia.0),
+            inertia: text.inertia.map_or(0.0, f64::from),
             loss,
         }));
     }
-    let couplings: Vec<_> = scene
-        .couplings
-        .iter()
-        .enumerate()
+    let couplings = scene.couplings.iter().enumerate();
+    let couplings: Vec<_> = couplings
         .map(|(i, text)| {
             Some(Coupling {
                 name: text.name.clone(),
-                shafts: ends.find(&text.between, &format!("couplings[{i}]"), findings)?,
+                shafts: ends.find(&text.between, findings.at(format!("couplings[{i}]")))?,
                 stiffness: text.stiffness.0,
                 damping: text.damping.0,
             })
         })
         .collect();
-    let gears: Vec<_> = scene
-        .gears
-        .iter()
-        .enumerate()
+    let gears = scene.gears.iter().enumerate();
+    let gears: Vec<_> = gears
         .map(|(i, text)| {
             Some(GearPair {
                 name: text.name.clone(),
-                shafts: ends.find(&text.between, &format!("gears[{i}]"), findings)?,
+                shafts: ends.find(&text.between, findings.at(format!("gears[{i}]")))?,
                 ratio: text.ratio(),
             })
         })
@@ -106,12 +103,13 @@ fn carriers(
     let mut carriers: Vec<Option<usize>> = vec![None; scene.sprockets.len()];
     for (index, shaft) in scene.shafts.iter().enumerate() {
         for (i, name) in shaft.sprockets.iter().enumerate() {
-            let path = format!("shafts[{index}].sprockets[{i}]");
-            let found = findings.lookup(&names.sprockets, "sprocket", name, &path);
-            let Some(sprocket) = found else { continue };
+            let mut at = findings.at(format!("shafts[{index}].sprockets[{i}]"));
+            let Some(sprocket) = at.lookup(&names.sprockets, "sprocket", name) else {
+                continue;
+            };
             if let Some(other) = carriers[sprocket] {
                 let message = format!("`{name}` sits on shaft `{}` already", names.shafts[other]);
-                findings.refuse_with(&path, message, "a sprocket sits on one shaft");
+                at.refuse(message, "a sprocket sits on one shaft");
             }
             carriers[sprocket] = Some(index);
         }
@@ -120,24 +118,15 @@ fn carriers(
 }
 
 /// A sprocket on a shaft has no rotation of its own.
-fn refuse_own_turning(
-    text: &schema::Sprocket,
-    path: &str,
-    shaft: &str,
-    findings: &mut Findings<'_>,
-) {
-    for (key, given) in [
+fn refuse_own_turning(text: &schema::Sprocket, shaft: &str, mut at: Cursor<'_, '_>) {
+    let given = [
         ("motion", text.motion.is_some()),
         ("drive", !text.drive.is_empty()),
         ("load", !text.load.is_empty()),
         ("speed", text.speed.is_some()),
-    ] {
-        if given {
-            let message = format!("`{}` turns with shaft `{shaft}`", text.name);
-            let hint = format!("give it to `shafts.{shaft}`");
-            findings.refuse_with(&format!("{path}.{key}"), message, hint);
-        }
-    }
+    ];
+    let message = format!("`{}` turns with shaft `{shaft}`", text.name);
+    at.refuse_given(given, &message, &format!("give it to `shafts.{shaft}`"));
 }
 
 type Turned<'t> = (
@@ -150,27 +139,20 @@ type Turned<'t> = (
 /// Drive of a shaft: a motion, or torques that drive and load it.
 fn rotation(
     (given, drive, load, speed): Turned<'_>,
-    path: &str,
     (scene, ends): (&SceneText, &Ends<'_>),
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<Rotation> {
     if let Some(given) = given {
-        for (key, torques) in [("drive", drive), ("load", load)] {
-            if !torques.is_empty() {
-                let hint =
-                    "keep one of them: a prescribed motion supplies whatever torque it takes";
-                findings.refuse_with(&format!("{path}.{key}"), "`motion` is given too", hint);
-            }
-        }
-        if speed.is_some() {
-            let hint = "leave `speed` out: the motion says how fast it turns";
-            findings.refuse_with(&format!("{path}.speed"), "`motion` is given too", hint);
-        }
-        let motion = motion::turn(given, &format!("{path}.motion"), scene, findings);
-        return motion.map(Rotation::Prescribed);
+        let message = "`motion` is given too";
+        let torques = [("drive", !drive.is_empty()), ("load", !load.is_empty())];
+        let hint = "keep one of them: a prescribed motion supplies whatever torque it takes";
+        at.refuse_given(torques, message, hint);
+        let hint = "leave `speed` out: the motion says how fast it turns";
+        at.refuse_given([("speed", speed.is_some())], message, hint);
+        return motion::turn(given, scene, at.key("motion")).map(Rotation::Prescribed);
     }
-    let drive = motion::torques(drive, &format!("{path}.drive"), ends, findings);
-    let load = motion::torques(load, &format!("{path}.load"), ends, findings);
+    let drive = motion::torques(drive, ends, at.key("drive"));
+    let load = motion::torques(load, ends, at.key("load"));
     Some(Rotation::Free {
         drive: drive?,
         load: load?,

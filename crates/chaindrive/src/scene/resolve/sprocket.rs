@@ -7,10 +7,11 @@ use chaindrive_mechanics::{Sprocket, Support, Surface, Tolerance, ToothStack};
 use serde_json::json;
 
 use super::chain::Resolved;
+use super::cursor::Cursor;
 use super::film::Strip;
 use super::law::{cylindrical, linear, steel};
 use super::scatter::Normal;
-use super::{Findings, Names, contact, flank, loss, motion, point, stack, tooth};
+use super::{Findings, Names, contact, flank, loss, motion, point, tooth};
 use crate::scene::defaults;
 use crate::scene::schema::{self, SceneText};
 
@@ -21,19 +22,11 @@ pub(super) fn resolve_all<'c>(
     findings: &mut Findings<'_>,
     chain_of: impl Fn(usize) -> &'c Resolved,
 ) -> Option<Vec<Sprocket>> {
-    let sprockets: Vec<_> = scene
-        .sprockets
-        .iter()
-        .enumerate()
+    let sprockets = scene.sprockets.iter().enumerate();
+    let sprockets: Vec<_> = sprockets
         .map(|(i, text)| {
-            resolve(
-                text,
-                &format!("sprockets[{i}]"),
-                scene,
-                names,
-                chain_of(i),
-                findings,
-            )
+            let at = findings.at(format!("sprockets[{i}]"));
+            resolve(text, scene, names, chain_of(i), at)
         })
         .collect();
     sprockets.into_iter().collect()
@@ -41,54 +34,41 @@ pub(super) fn resolve_all<'c>(
 
 fn resolve(
     text: &schema::Sprocket,
-    path: &str,
     scene: &SceneText,
     names: &Names<'_>,
     chain: &Resolved,
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<Sprocket> {
-    let form = tooth::form(
-        text.tooth.as_ref(),
-        chain.chain.pitch,
-        chain.chain.roller_diameter,
-        &format!("{path}.tooth"),
-        findings,
-    );
+    let (pitch, roller_diameter) = (chain.chain.pitch, chain.chain.roller_diameter);
+    let form = tooth::form(text.tooth.as_ref(), pitch, roller_diameter, at.key("tooth"));
     let gap = form.and_then(|form| {
-        let gap = ToothGap::new(
-            text.teeth,
-            chain.chain.pitch,
-            chain.chain.roller_diameter,
-            &form,
-        );
-        let place = if text.tooth.is_some() {
-            "tooth"
-        } else {
-            "teeth"
-        };
-        findings.keep(&format!("{path}.{place}"), gap)
+        let gap = ToothGap::new(text.teeth, pitch, roller_diameter, &form);
+        let place = text.tooth.as_ref().map_or("teeth", |_| "tooth");
+        at.key(place).keep(gap)
     });
-    let support = support(text, path, scene, names, findings);
+    let support = support(text, scene, names, at.key("support"));
     let said = contact::Said {
         own: &text.contact,
-        path: &format!("{path}.contact"),
+        path: &format!("{}.contact", at.path),
         common: &scene.contact.teeth,
         fallback: contact::TEETH,
     };
     let strip = gap.as_ref();
     let strip = strip.map(|gap| Strip::in_seat(chain.roller(), gap));
-    let mut surface = said.surface(chain.roller(), strip, findings, |findings| {
-        let place = format!("{path}.contact.law");
-        law(gap.as_ref()?, chain, &place, findings)
+    let mut surface = said.surface(chain.roller(), strip, at.findings, |findings| {
+        law(
+            gap.as_ref()?,
+            chain,
+            findings.at(format!("{}.law", said.path)),
+        )
     });
     let stack = surface
         .as_mut()
-        .and_then(|surface| behind(text, path, &said, surface, chain, findings));
-    let flank = gap
-        .as_ref()
-        .and_then(|gap| flank::resolve(text, path, scene, gap, chain, findings));
-    let tolerance = tolerance(text, path, findings);
-    let loss = loss::resolve(text.bearing.as_ref(), text.drag.as_ref(), path, findings);
+        .and_then(|surface| behind(text, &said, surface, chain, at.again()));
+    let flank = gap.as_ref();
+    let flank = flank.and_then(|gap| flank::resolve(text, scene, gap, chain, at.again()));
+    let tolerance = tolerance(text, at.key("gap_errors"));
+    let loss = loss::resolve(text.bearing.as_ref(), text.drag.as_ref(), at.again());
     let support = support?;
     let moves = match &support {
         Support::Springs { .. } => true,
@@ -97,7 +77,7 @@ fn resolve(
     };
     if moves && text.mass.is_none() {
         let hint = "give the mass, because the centre can move";
-        findings.refuse_with(&format!("{path}.mass"), "missing", hint);
+        at.key("mass").refuse("missing", hint);
     }
     Some(Sprocket {
         name: text.name.clone(),
@@ -109,16 +89,12 @@ fn resolve(
         centre: point(text.centre),
         shaft: 0,
         support,
-        inertia: text.inertia.map_or(0.0, |inertia| inertia.0),
-        mass: text.mass.map_or(0.0, |mass| mass.0),
+        inertia: text.inertia.map_or(0.0, f64::from),
+        mass: text.mass.map_or(0.0, f64::from),
         surface: surface?,
         stack,
         flank,
-        gap_angle: findings.or_default(
-            text.gap_angle.map(|angle| angle.0),
-            &format!("{path}.gap_angle"),
-            &defaults::GAP_ANGLE,
-        ),
+        gap_angle: at.key("gap_angle").or(text.gap_angle, &defaults::GAP_ANGLE),
         tolerance: tolerance?,
         lateral: text.lateral.0,
         loss: loss?,
@@ -128,28 +104,23 @@ fn resolve(
 /// Puts what lies behind the surface of the teeth into its law: the parts that a scene asks for, which are returned, or the default.
 fn behind(
     text: &schema::Sprocket,
-    path: &str,
     said: &contact::Said<'_>,
     surface: &mut Surface,
     chain: &Resolved,
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<ToothStack> {
-    let asked = said.stack(findings);
+    let asked = said.stack(at.findings);
     // The law that particles have where the scene gives none is that of the whole stack.
     let of_surfaces = chain.is_rigid() || said.law_path().is_some();
     if let Some((stack, place)) = asked {
         if !of_surfaces {
             let hint =
                 "give a `law` of the surfaces too: the default of particles has the stack in it";
-            findings.refuse_once(&place, "without a `law`", hint);
+            at.findings.refuse_once(&place, "without a `law`", hint);
             return None;
         }
-        let asked = stack::Asked {
-            stack,
-            path: &place,
-            rim: text.rim.map(|it| it.0),
-        };
-        let found = chain.behind_teeth.stack(asked, findings)?;
+        let at = at.findings.at(place);
+        let found = chain.behind_teeth.stack(stack, text.rim, at)?;
         let stiffness = found.stiffness();
         surface.law.series = stiffness.is_finite().then_some(stiffness);
         return Some(found);
@@ -157,28 +128,24 @@ fn behind(
     if text.rim.is_some() {
         let hint =
             "ask for the parts behind the teeth, `contact.teeth.stack = {}`, or leave it out";
-        findings.refuse_with(&format!("{path}.rim"), "without a `stack`", hint);
+        at.key("rim").refuse("without a `stack`", hint);
     }
     if said.series().is_none()
-        && let Some(behind) = chain.behind_teeth.behind(findings)
+        && let Some(behind) = chain.behind_teeth.behind(at.findings)
     {
-        let place = format!("{path}.contact.series");
+        let mut at = at.findings.at(format!("{}.series", said.path));
         if of_surfaces && behind.stiffness > 0.0 {
             surface.law.series = Some(behind.stiffness);
-            findings.assume(&place, behind.stiffness, &*behind.remark);
+            at.assume(behind.stiffness, behind.remark);
         } else {
-            findings.assume(&place, 0.0, "nothing lies behind");
+            at.assume(0.0, "nothing lies behind");
         }
     }
     None
 }
 
 /// Deviations of a sprocket from its drawing.
-fn tolerance(
-    text: &schema::Sprocket,
-    path: &str,
-    findings: &mut Findings<'_>,
-) -> Option<Tolerance> {
+fn tolerance(text: &schema::Sprocket, mut at: Cursor<'_, '_>) -> Option<Tolerance> {
     let teeth = text.teeth;
     let gap_displacements = match &text.gap_errors {
         None => Vec::new(),
@@ -187,10 +154,10 @@ fn tolerance(
             if count != teeth as usize {
                 let problem = format!("{count} values for {teeth} gaps");
                 let hint = "give one displacement for every gap";
-                findings.refuse_with(&format!("{path}.gap_errors.displacements"), problem, hint);
+                at.key("displacements").refuse(problem, hint);
                 return None;
             }
-            displacements.iter().map(|it| it.0).collect()
+            displacements.iter().copied().map(f64::from).collect()
         }
         Some(schema::GapErrors::Orders { waves }) => (0..teeth)
             .map(|gap| {
@@ -215,18 +182,13 @@ fn tolerance(
 }
 
 /// Elastic law of teeth that the scene leaves open.
-fn law(
-    gap: &ToothGap,
-    chain: &Resolved,
-    path: &str,
-    findings: &mut Findings<'_>,
-) -> Option<Elastic> {
+fn law(gap: &ToothGap, chain: &Resolved, mut at: Cursor<'_, '_>) -> Option<Elastic> {
     if !chain.is_rigid() {
-        let default = &defaults::TEETH_STIFFNESS;
-        return Some(linear(chain.link_stiffness(), path, default, findings));
+        let stiffness = chain.link_stiffness();
+        return Some(linear(stiffness, &defaults::TEETH_STIFFNESS, at));
     }
     let roller = chain.roller();
-    let steel = steel(findings.version);
+    let steel = steel(at.findings.version);
     let seated = roller
         .length
         .and_then(|length| cylindrical(roller, gap.seat_clearance, length, steel).ok());
@@ -239,40 +201,38 @@ fn law(
             "radius": roller.radius,
             "clearance": gap.seat_clearance,
         });
-        findings.assume(path, text, "follows from roller and seat");
+        at.assume(text, "follows from roller and seat");
     } else {
         let hint =
             "give a law, or `chain.roller.length`, with which it follows from roller and seat";
-        findings.refuse_once("contact.teeth.law", "missing", hint);
+        at.findings
+            .refuse_once("contact.teeth.law", "missing", hint);
     }
     seated
 }
 
 fn support(
     text: &schema::Sprocket,
-    path: &str,
     scene: &SceneText,
     names: &Names<'_>,
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<Support> {
-    let path = format!("{path}.support");
     Some(match &text.support {
         None => {
-            findings.assume_kind(&path, "fixed");
+            at.assume_kind("fixed");
             Support::Fixed
         }
         Some(schema::Support::Fixed) => Support::Fixed,
         Some(schema::Support::Prescribed { x, y }) => {
-            let x = motion::shift(x, &format!("{path}.x"), scene, findings);
-            let y = motion::shift(y, &format!("{path}.y"), scene, findings);
-            Support::Prescribed { x: x?, y: y? }
+            let [x, y] = motion::shifts([x, y], scene, at)?;
+            Support::Prescribed { x, y }
         }
         Some(schema::Support::Springs { stiffness, damping }) => Support::Springs {
             stiffness: stiffness.map(|k| k.0),
             damping: damping.map(|c| c.0),
         },
         Some(schema::Support::Tensioner { name }) => {
-            Support::Tensioner(names.tensioner(name, &format!("{path}.name"), findings)?)
+            Support::Tensioner(names.tensioner(name, at.key("name"))?)
         }
     })
 }

@@ -16,8 +16,6 @@ use crate::catalogue::{CatalogueChain, Number};
 use crate::scene::defaults;
 use crate::scene::schema::{self, Contact, Rollers, SceneText};
 
-pub(super) use terms::Asked;
-
 /// Stiffness of roller on bush and bush on pin, zero where that is nothing, and why.
 #[derive(Clone, Debug)]
 pub(super) struct Behind {
@@ -90,32 +88,33 @@ impl Parts {
     }
 
     /// A length as the scene has it, or the catalogue \[m\].
-    fn number(&self, given: Option<f64>, of: Number) -> Option<f64> {
+    fn number(&self, given: Option<impl Into<f64>>, of: Number) -> Option<f64> {
+        let given = given.map(Into::into);
         given.or_else(|| self.of_type?.number(of))
     }
 
     /// Radial clearance of the pin in its bush \[m\].
     fn play(&self) -> Option<f64> {
         let given = self.text.joint.as_ref().and_then(|it| it.clearance);
-        let given = given.map(|it| it.0).filter(|play| *play > 0.0);
+        let given = given.map(f64::from).filter(|play| *play > 0.0);
         given.or_else(|| self.of_type?.joint_clearance())
     }
 
     fn bush_diameter(&self) -> Option<f64> {
         let given = self.text.roller.as_ref().and_then(|it| it.bush_diameter);
-        self.number(given.map(|it| it.0), Number::BushDiameter)
+        self.number(given, Number::BushDiameter)
     }
 
     fn pin_diameter(&self) -> Option<f64> {
         let given = self.text.joint.as_ref().and_then(|it| it.pin_diameter);
-        self.number(given.map(|it| it.0), Number::PinDiameter)
+        self.number(given, Number::PinDiameter)
     }
 
     /// Length of the bush \[m\].
     fn joint_length(&self) -> Option<f64> {
         let given = self.text.joint.as_ref().and_then(|it| it.length);
         given
-            .map(|it| it.0)
+            .map(f64::from)
             .or_else(|| self.of_type?.joint_length())
     }
 
@@ -130,7 +129,7 @@ impl Parts {
     /// Radial clearance of the roller on its bush \[m\]: not in the catalogue, so that of the pin.
     fn roller_play(&self) -> Option<f64> {
         let given = self.text.roller.as_ref().and_then(|it| it.clearance);
-        given.map(|it| it.0).or_else(|| self.play())
+        given.map(f64::from).or_else(|| self.play())
     }
 
     fn roller_on_bush(&self) -> Option<Fit> {

@@ -73,10 +73,9 @@ pub(super) fn refuse(text: &schema::Chain, findings: &mut Findings<'_>) {
         ("inner", text.inner.is_some()),
         ("outer", text.outer.is_some()),
     ];
-    for (key, _) in given.iter().filter(|(_, given)| *given) {
-        let message = "a chain of bush strands has none";
-        findings.refuse_with(&format!("chain.{key}"), message, "leave it out");
-    }
+    let message = "a chain of bush strands has none";
+    let mut at = findings.at("chain");
+    at.refuse_given(given, message, "leave it out");
 }
 
 /// The strands of a chain as one: masses and lengths of contact are so many times those of a strand, stiffness and damping the sums, the
@@ -118,7 +117,7 @@ pub(super) fn as_one(text: &schema::Chain, of_type: Option<&CatalogueChain>) -> 
 fn breaking_load(text: &schema::Chain, lengths: &[f64], stiffnesses: &[f64]) -> Option<f64> {
     let single = text.breaking_load?.0;
     let listed = text.stiffnesses.iter().flatten().map(|it| it.0);
-    let stiffness = text.stiffness.map(|it| it.0).or(listed.reduce(f64::min))?;
+    let stiffness = text.stiffness.map(f64::from).or(listed.reduce(f64::min))?;
     let pitch = text.pitch?.0;
     let strands = || lengths.iter().zip(stiffnesses);
     let breaks = strands().map(|(own, factor)| {

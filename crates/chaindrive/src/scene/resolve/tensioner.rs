@@ -7,6 +7,7 @@ use serde::Deserialize;
 use serde_json::{Value as Json, json};
 
 use super::Findings;
+use super::cursor::Cursor;
 use crate::scene::schema::{self, GuideSupport, SceneText, Support};
 
 pub(super) fn resolve_all(
@@ -15,7 +16,7 @@ pub(super) fn resolve_all(
 ) -> Option<Vec<Tensioner>> {
     let mut tensioners = Vec::new();
     for (i, text) in scene.tensioners.iter().enumerate() {
-        let path = format!("tensioners[{i}]");
+        let mut at = findings.at(format!("tensioners[{i}]"));
         let sprockets = scene
             .sprockets
             .iter()
@@ -25,24 +26,24 @@ pub(super) fn resolve_all(
         );
         if !(sprockets || guides) {
             let hint = "let a sprocket or guide say `support = { kind = \"tensioner\", name = … }`";
-            findings.refuse_with(&path, format!("`{}` carries nothing", text.name), hint);
+            at.refuse(format!("`{}` carries nothing", text.name), hint);
         }
-        tensioners.push(resolve(text, &path, findings));
+        tensioners.push(resolve(text, at));
     }
     tensioners.into_iter().collect()
 }
 
-fn resolve(text: &schema::Tensioner, path: &str, findings: &mut Findings<'_>) -> Option<Tensioner> {
-    let place = format!("{path}.carrier");
-    let keys = unit_vectors(text.carrier.keys.clone(), &place, findings);
-    let carrier = keys.and_then(|keys| findings.read(keys, &place, check::<Carrier>));
-    let push = push(text, carrier.as_ref(), &format!("{path}.push"), findings);
+fn resolve(text: &schema::Tensioner, mut at: Cursor<'_, '_>) -> Option<Tensioner> {
+    let mut of_carrier = at.key("carrier");
+    let keys = unit_vectors(text.carrier.keys.clone(), of_carrier.again());
+    let carrier = keys.and_then(|keys| of_carrier.read(keys, check::<Carrier>));
+    let push = push(text, carrier.as_ref(), at.key("push"));
     let (carrier, push) = (carrier?, push?);
     if let (key, None) = carrier.inertia()
         && push != Push::Locked
     {
         let hint = format!("give the {key} of a tensioner that is not locked");
-        findings.refuse_with(&format!("{place}.{key}"), "missing", hint);
+        at.key("carrier").key(key).refuse("missing", hint);
     }
     Some(Tensioner {
         name: text.name.clone(),
@@ -52,14 +53,14 @@ fn resolve(text: &schema::Tensioner, path: &str, findings: &mut Findings<'_>) ->
 }
 
 /// The keys of a carrier, each `direction` with the length of one.
-fn unit_vectors(mut keys: Json, path: &str, findings: &mut Findings<'_>) -> Option<Json> {
+fn unit_vectors(mut keys: Json, mut at: Cursor<'_, '_>) -> Option<Json> {
     for (key, value) in keys.as_object_mut()? {
-        let place = format!("{path}.{key}");
+        let mut at = at.key(key);
         if key == "direction" {
             let given = <[Ratio; 2]>::deserialize(&*value).ok()?;
-            *value = json!(findings.direction(&place, given)?);
+            *value = json!(at.direction(given)?);
         } else if value.is_object() {
-            *value = unit_vectors(value.take(), &place, findings)?;
+            *value = unit_vectors(value.take(), at)?;
         }
     }
     Some(keys)
@@ -69,14 +70,13 @@ fn unit_vectors(mut keys: Json, path: &str, findings: &mut Findings<'_>) -> Opti
 fn push(
     text: &schema::Tensioner,
     carrier: Option<&Carrier>,
-    path: &str,
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<Push> {
     let mut keys = text.push.keys.clone();
     if text.push.word("kind") == "hydraulic" {
-        keys = forces_of_oil(keys, path, findings)?;
+        keys = forces_of_oil(keys, at.again())?;
     }
-    let push: Push = findings.read(keys, path, |push| match push {
+    let push: Push = at.read(keys, |push| match push {
         Push::Registered(law) => law.check(),
         own => check(own),
     })?;
@@ -85,19 +85,19 @@ fn push(
     {
         let given = text.push.keys.get("oil").map_or("relief", |_| "oil.relief");
         let message = "the relief valve opens below the supply pressure";
-        findings.refuse(&format!("{path}.{given}"), message);
+        at.key(given).refuse(message, "");
         return None;
     }
     match (push.unit(), carrier?.push_unit()) {
         (Some("N"), "N m") => {
             let hint = "give the arm a `plunger`, or take a `torsion-spring`";
-            findings.refuse_with(path, "a force needs a place on the arm", hint);
+            at.refuse("a force needs a place on the arm", hint);
             None
         }
         (Some("N m"), "N") => {
             let hint = "take a `spring`, or an arm without a plunger";
             let message = "a torsion spring turns an arm and nothing else";
-            findings.refuse_with(path, message, hint);
+            at.refuse(message, hint);
             None
         }
         _ => Some(push),
@@ -105,22 +105,22 @@ fn push(
 }
 
 /// The keys of a plunger, with the forces that follow from its oil in place of it.
-fn forces_of_oil(mut keys: Json, path: &str, findings: &mut Findings<'_>) -> Option<Json> {
+fn forces_of_oil(mut keys: Json, mut at: Cursor<'_, '_>) -> Option<Json> {
     let direct = ["supply", "relief", "leak"];
     let Some(oil) = keys.as_object_mut()?.shift_remove("oil") else {
         let absent = direct.iter().filter(|key| keys.get(**key).is_none());
         let absent: Vec<_> = absent.collect();
         for key in &absent {
             let hint = "give `supply`, `relief` and `leak`, or `oil`, from which they follow";
-            findings.refuse_with(&format!("{path}.{key}"), "missing", hint);
+            at.key(key).refuse("missing", hint);
         }
         return absent.is_empty().then_some(keys);
     };
     for key in direct.iter().filter(|key| keys.get(**key).is_some()) {
         let hint = "keep one of them";
-        findings.refuse_with(&format!("{path}.{key}"), "`oil` is given too", hint);
+        at.key(key).refuse("`oil` is given too", hint);
     }
-    let oil: Oil = findings.read(oil, &format!("{path}.oil"), check)?;
+    let oil: Oil = at.key("oil").read(oil, check)?;
     // F = p A
     keys["supply"] = (oil.supply * oil.area()).into();
     keys["relief"] = (oil.relief * oil.area()).into();
@@ -135,7 +135,7 @@ fn forces_of_oil(mut keys: Json, path: &str, findings: &mut Findings<'_>) -> Opt
     }
     for (key, _) in given.iter().filter(|(_, value)| value.is_none()) {
         let hint = "oil that can be compressed needs `bulk_modulus`, `volume` and `air`";
-        findings.refuse_with(&format!("{path}.oil.{key}"), "missing", hint);
+        at.key("oil").key(key).refuse("missing", hint);
     }
     let mut resists = true;
     for key in ["extending", "relieving"] {
@@ -146,7 +146,7 @@ fn forces_of_oil(mut keys: Json, path: &str, findings: &mut Findings<'_>) -> Opt
         {
             let hint = "give the damping by the valve, such as \"200 N s/m\"";
             let message = "oil that can be compressed needs a valve with a resistance";
-            findings.refuse_with(&format!("{path}.{key}"), message, hint);
+            at.key(key).refuse(message, hint);
             resists = false;
         }
     }

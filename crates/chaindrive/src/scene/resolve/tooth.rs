@@ -6,7 +6,8 @@ use chaindrive_geometry::{
 
 use serde_json::json;
 
-use super::{Findings, point};
+use super::cursor::Cursor;
+use super::point;
 use crate::scene::defaults;
 use crate::scene::schema::{self, PathPiece, TipForm, Tooth};
 use chaindrive_quantities::Length;
@@ -16,14 +17,13 @@ pub(super) fn form(
     tooth: Option<&Tooth>,
     pitch: f64,
     roller_diameter: f64,
-    path: &str,
-    findings: &mut Findings<'_>,
+    mut at: Cursor<'_, '_>,
 ) -> Option<ToothForm> {
     let mut tip = |form: TipForm, diameter: Option<Length>| match (form, diameter) {
         (TipForm::Mid, Some(diameter)) => Some(Tip::Diameter(diameter.0)),
         (_, Some(_)) => {
-            let place = format!("{path}.tip_diameter");
-            findings.refuse_with(&place, "`tip` is given too", "keep one of them");
+            at.key("tip_diameter")
+                .refuse("`tip` is given too", "keep one of them");
             None
         }
         (TipForm::Min, None) => Some(Tip::Minimum),
@@ -31,9 +31,9 @@ pub(super) fn form(
         (TipForm::Max, None) => Some(Tip::Maximum),
     };
     let Some(tooth) = tooth else {
-        let gap = defaults::GAP.value(findings.version);
+        let gap = defaults::GAP.value(at.findings.version);
         let text = json!({"kind": "iso606", "gap": gap, "tip": "mid", "seat": "bottom"});
-        findings.assume(path, text, defaults::GAP.basis.remark());
+        at.assume(text, defaults::GAP.basis.remark());
         return Some(ToothForm::Iso606 {
             gap,
             tip: Tip::Mid,
@@ -64,25 +64,24 @@ pub(super) fn form(
             seat,
         } => ToothForm::Circular {
             tip: tip(*form, *tip_diameter)?,
-            seat_radius: findings.or_multiple(
-                seat_radius.map(|radius| radius.0),
-                &format!("{path}.seat_radius"),
+            seat_radius: at.key("seat_radius").or_multiple(
+                *seat_radius,
                 &defaults::SEAT_RADIUS,
                 roller_diameter,
             ),
             seat: seat_of(*seat),
         },
         Tooth::Path { from, pieces } => ToothForm::Path {
-            pieces: path_of(point(*from), pieces, path, findings)?,
+            pieces: path_of(point(*from), pieces, at.key("pieces"))?,
         },
         Tooth::Points { points, tolerance } => {
             let points: Vec<Point> = points.iter().copied().map(point).collect();
-            let tolerance = tolerance.map(|tolerance| tolerance.0);
-            let place = format!("{path}.tolerance");
-            let tolerance = findings.or_multiple(tolerance, &place, &defaults::TOLERANCE, pitch);
+            let tolerance =
+                at.key("tolerance")
+                    .or_multiple(*tolerance, &defaults::TOLERANCE, pitch);
             let pieces = fit_arcs(&points, false, tolerance);
             ToothForm::Path {
-                pieces: findings.keep(&format!("{path}.points"), pieces)?,
+                pieces: at.key("points").keep(pieces)?,
             }
         }
     })
@@ -95,22 +94,16 @@ fn seat_of(seat: schema::Seat) -> Seat {
     }
 }
 
-fn path_of(
-    from: Point,
-    pieces: &[PathPiece],
-    path: &str,
-    findings: &mut Findings<'_>,
-) -> Option<Vec<Piece>> {
-    let mut at = from;
+fn path_of(from: Point, pieces: &[PathPiece], mut at: Cursor<'_, '_>) -> Option<Vec<Piece>> {
+    let mut start = from;
     let mut drawn = Vec::new();
     for (index, piece) in pieces.iter().enumerate() {
-        let place = format!("{path}.pieces[{index}]");
         let (end, next) = match piece {
-            PathPiece::Line { to } => (point(*to), Ok(Segment::new(at, point(*to)).into())),
-            PathPiece::Arc { to, radius } => (point(*to), arc(at, point(*to), radius.0)),
+            PathPiece::Line { to } => (point(*to), Ok(Segment::new(start, point(*to)).into())),
+            PathPiece::Arc { to, radius } => (point(*to), arc(start, point(*to), radius.0)),
         };
-        drawn.push(findings.keep(&place, next)?);
-        at = end;
+        drawn.push(at.entry(index).keep(next)?);
+        start = end;
     }
     Some(drawn)
 }

@@ -1,45 +1,80 @@
-//! Laws from what a scene writes of them: defaults are filled in, then the law reads itself.
+//! Laws from what a scene writes of them: what is absent is filled in, then the law reads itself.
 
-use chaindrive_quantities::ParameterError;
+use chaindrive_contact::Lubricant;
+use chaindrive_quantities::{JsonSchema, ParameterError};
 use serde::de::DeserializeOwned;
 use serde_json::Value as Json;
 
-use super::Findings;
+use super::cursor::Cursor;
 use crate::scene::defaults;
 use crate::scene::format::raw;
+use crate::scene::schema::Written;
 
-impl Findings<'_> {
-    /// The keys at `path`, completed by the defaults of their type in the schema of scenes that are values with the unit of the key.
-    pub(super) fn completed(&mut self, mut keys: Json, of_type: &str, path: &str) -> Json {
+impl Cursor<'_, '_> {
+    /// The keys of a law, completed by the defaults of its type that are values with the unit of the key.
+    pub(super) fn completed<T: JsonSchema>(&mut self, text: &Written<T>) -> Json {
+        let mut keys = text.keys.clone();
         let kind = keys["kind"].as_str().map(str::to_owned);
-        for (key, default) in defaults::of_keys(raw(), of_type, kind.as_deref()) {
-            if keys.get(key).is_none_or(Json::is_null) {
-                keys[key] = self
-                    .or_default(None, &format!("{path}.{key}"), default)
-                    .into();
+        for (key, default) in defaults::of_keys(raw(), &T::schema_name(), kind.as_deref()) {
+            if keys.get(key).is_none() {
+                keys[key] = self.key(key).or(None::<f64>, default).into();
             }
         }
         keys
+    }
+
+    /// Fills in an absent key by what its surroundings know, a value and where it comes from; refused where they know nothing.
+    pub(super) fn fill(
+        &mut self,
+        keys: &mut Json,
+        key: &str,
+        known: Option<(f64, impl Into<String>)>,
+        hint: &str,
+    ) -> Option<()> {
+        if keys.get(key).is_none() {
+            let mut at = self.key(key);
+            let Some((value, remark)) = known else {
+                at.refuse_once("missing", hint);
+                return None;
+            };
+            at.assume(value, remark);
+            keys[key] = value.into();
+        }
+        Some(())
+    }
+
+    /// Fills in an absent `viscosity` by that of the oil.
+    pub(super) fn fill_viscosity(
+        &mut self,
+        keys: &mut Json,
+        viscosity: fn(&Lubricant) -> f64,
+    ) -> Option<()> {
+        if keys.get("viscosity").is_none() {
+            keys["viscosity"] = self.key("viscosity").of_oil(viscosity)?.into();
+        }
+        Some(())
     }
 
     /// The law whose parameters are all known; `check` is its own.
     pub(super) fn read<T: DeserializeOwned>(
         &mut self,
         keys: Json,
-        path: &str,
         check: impl FnOnce(&T) -> Result<(), ParameterError>,
     ) -> Option<T> {
         let law = T::deserialize(keys)
-            .map_err(|error| self.refuse_once(path, error.to_string(), ""))
+            .map_err(|error| self.refuse_once(error.to_string(), ""))
             .ok()?;
-        let sound = check(&law).map_err(|error| self.refuse_parameter(path, &error));
-        sound.ok().map(|()| law)
+        self.sound(check(&law))?;
+        Some(law)
     }
 
     /// Refuses a parameter of a law that several bodies may share, once.
-    pub(super) fn refuse_parameter(&mut self, path: &str, error: &ParameterError) {
-        let message = format!("{}, must be {}", error.value, error.allowed);
-        self.refuse_once(&format!("{path}.{}", error.parameter), message, "");
+    pub(super) fn sound(&mut self, checked: Result<(), ParameterError>) -> Option<()> {
+        let refuse = |error: ParameterError| {
+            let message = format!("{}, must be {}", error.value, error.allowed);
+            self.key(&error.parameter).refuse_once(message, "");
+        };
+        checked.map_err(refuse).ok()
     }
 }
 

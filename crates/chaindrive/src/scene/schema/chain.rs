@@ -1,9 +1,10 @@
 //! The chain and the places where a strand begins.
 
+use chaindrive_mechanics::LateralRub;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ChainModel, Joint, Lateral, Link, Motion, Roller, Rollers, Route};
+use super::{ChainModel, Joint, Link, Motion, Roller, Rollers, Route, Written};
 use chaindrive_quantities::{
     AngularSpeed, Damping, Drag, Force, Length, Mass, Power, Ratio, Speed, Stiffness,
 };
@@ -22,75 +23,58 @@ pub(crate) struct Chain {
     #[serde(default)]
     pub(crate) model: ChainModel,
     /// Nominal pitch [m]: what the sprockets are cut for.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) pitch: Option<Length>,
     /// Number of links; absent, around sprockets: the even number nearest to the taut route.
-    #[serde(default)]
     #[schemars(extend("minimum" = 1, "maximum" = 100_000))]
     pub(crate) links: Option<u32>,
     /// Mass of one link [kg], at its roller.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) mass: Option<Mass>,
     /// Stiffness of one link [N/m]. Rigid links are laid and settled with it, nothing else; absent
     /// there: that of a joint under the pretension, or ten times that of a tooth.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) stiffness: Option<Stiffness>,
     /// Damping of one link [N s/m].
-    #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) damping: Option<Damping>,
     /// Damping ratio ζ of one link [–], c = 2 ζ √(k m), unless `damping` is given.
-    #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) damping_ratio: Option<Ratio>,
     /// Drag of oil or air across every link, per length and speed [N s/m²]; absent: none.
-    #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) drag: Option<Drag>,
     /// Roller (or bush) diameter [m]. A strand that touches nothing may leave it out.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) roller_diameter: Option<Length>,
     /// Height of the link plates [m]: what a guide for plates touches.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) plate_height: Option<Length>,
     /// Least breaking load [N]: the verdict says where a link bears more. Nothing yields or breaks for it.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) breaking_load: Option<Force>,
     /// Strands side by side: the factor of its power in the rating is 1, 1.7, 2.5, 3.3, 3.9 or 4.6. Bush strands share loads in motion, and
     /// mass, stiffness, damping and breaking load are then those of one of them. The motion of other models is that of one chain: the values
     /// are those written, and from the catalogue those of a single strand. Absent: 1.
-    #[serde(default)]
     #[schemars(extend("minimum" = 1, "maximum" = 6))]
     pub(crate) strands: Option<u32>,
     /// By how much the links of every strand are longer than those of the chain as written [–], one value for each; for bush strands. Absent:
     /// all are alike.
-    #[serde(default)]
     pub(crate) strand_elongations: Option<Vec<Elongation>>,
     /// Stiffness of every strand, in that which is written [–], one value for each; for bush strands. Absent: 1 for all.
-    #[serde(default)]
     pub(crate) strand_stiffnesses: Option<Vec<Share>>,
     /// Service factor [–], for the rating only: the power that is carried counts so many times. ISO 10823 has 1 for smooth running, 1.4 for
     /// moderate and 1.8 for heavy shocks of the driven machine, more with those of an engine.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) service_factor: Option<Ratio>,
     /// Power that its maker rates the chain for [W], for the rating only: all strands together, at the speed of this drive and the teeth of its
     /// smallest sprocket; absent: by formula, where one could be read for the type.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) rated_power: Option<Power>,
     /// Unstressed length of the inner links, every second one [m]; absent: the pitch.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) inner_pitch: Option<Length>,
     /// Unstressed length of the outer links [m]; absent: the pitch.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) outer_pitch: Option<Length>,
     /// Wear: by how much every link is longer than new [–].
@@ -98,44 +82,33 @@ pub(crate) struct Chain {
     #[schemars(extend("exclusiveMinimum" = -0.5, "maximum" = 0.5))]
     pub(crate) elongation: Ratio,
     /// Random differences between the links; the same seed gives the same chain.
-    #[serde(default)]
     pub(crate) scatter: Option<Scatter>,
     /// Unstressed length of every link [m], instead of `inner_pitch` and `outer_pitch`.
-    #[serde(default)]
     pub(crate) pitches: Option<Vec<Length>>,
     /// Mass at every roller [kg], instead of `mass`. A strand has one roller more than links.
-    #[serde(default)]
     pub(crate) masses: Option<Vec<Mass>>,
     /// Stiffness of every link [N/m], instead of `stiffness`.
-    #[serde(default)]
     pub(crate) stiffnesses: Option<Vec<Stiffness>>,
     /// Rollers on the teeth; absent: lumped, or none for a bush chain of the catalogue. On particles `free` makes roller, bush and
     /// pin of every joint points of their own, with play between them.
-    #[serde(default)]
     pub(crate) rollers: Option<Rollers>,
     /// Whether the first link is an outer one, with pins; absent: an inner one, with bushes.
     #[serde(default)]
     pub(crate) outer_first: bool,
     /// Links with bushes.
-    #[serde(default)]
     pub(crate) inner: Option<Link>,
     /// Links with pins.
-    #[serde(default)]
     pub(crate) outer: Option<Link>,
     /// Pins in their bushes.
-    #[serde(default)]
     pub(crate) joint: Option<Joint>,
     /// Plates that rub where the chain runs out of line.
     #[serde(default)]
-    pub(crate) lateral: Lateral,
+    pub(crate) lateral: Written<LateralRub>,
     /// Rollers on their bushes.
-    #[serde(default)]
     pub(crate) roller: Option<Roller>,
     /// Conditions at the first and last roller: they make the chain an open strand.
-    #[serde(default)]
     pub(crate) ends: Option<[End; 2]>,
     /// Where the chain lies at the start; absent: along the route.
-    #[serde(default)]
     pub(crate) start: Option<Start>,
 }
 
@@ -159,7 +132,6 @@ pub(crate) struct NamedChain {
     /// Name, unique among the chains.
     pub(crate) name: String,
     /// How it lies around its sprockets; absent: around all that belong to it, in file order.
-    #[serde(default)]
     pub(crate) route: Option<Route>,
     /// The chain.
     #[serde(flatten)]
@@ -168,26 +140,21 @@ pub(crate) struct NamedChain {
 
 /// Random differences between links: normal, each with a relative standard deviation.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 pub(crate) struct Scatter {
     /// Standard deviation of the link length over the pitch [–].
-    #[serde(default)]
     #[schemars(extend("minimum" = 0, "maximum" = 0.2))]
     pub(crate) pitch: Ratio,
     /// Standard deviation of the mass over its mean [–].
-    #[serde(default)]
     #[schemars(extend("minimum" = 0, "maximum" = 0.2))]
     pub(crate) mass: Ratio,
     /// Standard deviation of the stiffness over its mean [–].
-    #[serde(default)]
     #[schemars(extend("minimum" = 0, "maximum" = 0.2))]
     pub(crate) stiffness: Ratio,
     /// Standard deviation of the roller diameter over its mean [–].
-    #[serde(default)]
     #[schemars(extend("minimum" = 0, "maximum" = 0.05))]
     pub(crate) roller_diameter: Ratio,
     /// Which of the possible chains it is.
-    #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) seed: u32,
 }
@@ -248,7 +215,6 @@ pub(crate) enum Start {
         /// Places (x, y) of all rollers [m].
         positions: Vec<[Length; 2]>,
         /// Velocities (x, y) of all rollers [m/s]; absent: at rest.
-        #[serde(default)]
         velocities: Option<Vec<[Speed; 2]>>,
     },
 }

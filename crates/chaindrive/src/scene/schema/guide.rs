@@ -14,7 +14,6 @@ pub(crate) struct Guide {
     /// Name, unique among sprockets and guides.
     pub(crate) name: String,
     /// Name of the chain that it belongs to, where there are several and no route passes it.
-    #[serde(default)]
     pub(crate) chain: Option<String>,
     /// Working face.
     pub(crate) face: Face,
@@ -22,7 +21,6 @@ pub(crate) struct Guide {
     #[serde(default)]
     pub(crate) touches: Touches,
     /// Its support; absent: bolted to the frame.
-    #[serde(default)]
     pub(crate) support: Option<GuideSupport>,
     /// Contact with the chain, where it differs from `contact.guides`.
     #[serde(default)]
@@ -40,11 +38,9 @@ pub(crate) enum Face {
         /// Where the straight part ends (x, y) [m].
         end: [Length; 2],
         /// Radius of the curved ends [m]; absent: a quarter of the straight length.
-        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         end_radius: Option<Length>,
         /// Angle of the curved ends [rad].
-        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         end_angle: Option<Angle>,
         /// Side of the line from `start` to `end` on which the material lies; absent: right,
@@ -78,30 +74,24 @@ pub(crate) enum Face {
     /// On the straight span between two sprockets, placed by shares of its length: convex by a radius, or a straight bar.
     OnSpan {
         /// Names of the sprockets before and behind, in the order of travel; absent: those beside it among the stops of the route.
-        #[serde(default)]
         between: Option<[String; 2]>,
         /// Share of the span at which the face begins, from 0 where the chain leaves the sprocket before [–].
         from: Ratio,
         /// Share of the span at which it ends [–].
         to: Ratio,
         /// Radius of the face [m]; absent: straight, with ends that curve away from the chain.
-        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         radius: Option<Length>,
         /// Share of the span at which a convex face bends the chain most, as where a shoe touches; absent: half-way from `from` to `to` [–].
-        #[serde(default)]
         crest: Option<Ratio>,
         /// How far the face pushes the chain across the straight span [m], negative where it keeps clear; absent: as far
         /// as makes the links close without stress where the first sprocket stands symmetric, for one convex face that is a stop.
-        #[serde(default)]
         bow: Option<Length>,
         /// Radius of the ends of a straight face [m]; absent: a quarter of its length, or where such ends would cut into the teeth of the sprockets beside it,
         /// so much less that they clear them.
-        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         end_radius: Option<Length>,
         /// Angle of the ends of a straight face [rad].
-        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         end_angle: Option<Angle>,
         /// Side of the chain on which the material lies; absent: right, which is the outside of a counter-clockwise chain.

@@ -10,43 +10,20 @@ use chaindrive_quantities::{Temperature, ThermalExpansion};
 #[serde(deny_unknown_fields)]
 pub(crate) struct Housing {
     /// Thermal expansion of the housing [1/K], or "steel", "grey-iron", "aluminium": 11.5e-6, 10.5e-6, 23e-6.
-    pub(crate) expansion: Expansion,
+    #[schemars(extend(
+        "x-words" = {"steel": 11.5e-6, "grey-iron": 10.5e-6, "aluminium": 23e-6},
+        "examples" = ["aluminium"],
+        "minimum" = 0,
+        "maximum" = 1e-4,
+    ))]
+    pub(crate) expansion: ThermalExpansion,
     /// Thermal expansion of chain and sprockets [1/K].
-    #[serde(default)]
     #[schemars(extend("minimum" = 0, "maximum" = 1e-4))]
     pub(crate) chain_expansion: Option<ThermalExpansion>,
     /// Temperature [K], such as "90 degC".
     #[schemars(extend("minimum" = 173.15, "maximum" = 773.15))]
     pub(crate) temperature: Temperature,
     /// Temperature at which the chain was fitted, with its pretension, sag or slack [K].
-    #[serde(default)]
     #[schemars(extend("minimum" = 173.15, "maximum" = 773.15))]
     pub(crate) assembled_at: Option<Temperature>,
-}
-
-/// Thermal expansion of a material.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-#[serde(transparent)]
-pub(crate) struct Expansion(pub(crate) f64);
-
-impl JsonSchema for Expansion {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "Expansion".into()
-    }
-
-    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        schemars::json_schema!({
-            "type": ["number", "string"],
-            "x-dimension": "a thermal expansion",
-            "x-unit": "1/K",
-            "x-words": {"steel": 11.5e-6, "grey-iron": 10.5e-6, "aluminium": 23e-6},
-            "examples": ["aluminium"],
-            "minimum": 0,
-            "maximum": 1e-4,
-        })
-    }
 }

@@ -1,5 +1,7 @@
 //! Parts of rigid links: plates, joints, rollers.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -56,11 +58,9 @@ pub(crate) enum Rollers {
 #[serde(deny_unknown_fields)]
 pub(crate) struct Link {
     /// Mass [kg].
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) mass: Option<Mass>,
     /// Moment of inertia about the centre of mass [kg m²].
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) inertia: Option<Inertia>,
     /// Centre of mass [m] from the middle between the joints: along the link in the order of the
@@ -71,91 +71,50 @@ pub(crate) struct Link {
 
 /// Pins in their bushes.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 pub(crate) struct Joint {
     /// Diameter of the pin [m], on which the joints slide.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) pin_diameter: Option<Length>,
     /// Radial clearance [m]: radius of the bore less radius of the pin; for clearance joints. At 0 pins have no play, and
     /// the link beside them yields: with `contact.series`, or with the stiffness of the link. Between bush strands it is the play in
     /// which a strand of an inner link hangs loose; absent there: 0, and strands push as they pull.
-    #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) clearance: Option<Length>,
     /// Length on which pin and bush touch [m]; for clearance joints.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) length: Option<Length>,
     /// Viscous damping [N m s] against turning; absent: none.
-    #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) damping: AngularDamping,
     /// Sum of the pressures of a pin on its bush over the force that they balance, κ [–], for the friction f(κ N, v): "line" (1) where they
     /// touch along a line, "cosine" (4/π) and "uniform" (π/2) where the pin has worn in and bears on half of its circumference. A coefficient
     /// that was found with one of them is of no use with another. Absent: line.
-    #[serde(default)]
     pub(crate) pressure_factor: PressureFactor,
     /// Torque with which the seal of every joint resists [N m], an O-ring or X-ring between inner and outer plate; absent: none.
-    #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) seal_torque: Torque,
     /// Contact of pin and bush, where it differs from `contact.joints`; joints without clearance have nothing of it but the
     /// friction.
-    #[serde(default)]
     pub(crate) contact: Contact,
 }
 
 /// Sum of pressures over the force that they balance.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+// A pressure over half of a circumference: ∫ p dφ / ∫ p cos φ dφ of p = cos φ and of p = 1.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(transparent)]
-pub(crate) struct PressureFactor(pub(crate) f64);
+#[schemars(inline, extend(
+    "x-words" = {"line": 1.0, "cosine": 4.0 / PI, "uniform": FRAC_PI_2},
+    "examples" = ["uniform"],
+    "minimum" = 1,
+    "maximum" = 2,
+))]
+pub(crate) struct PressureFactor(pub(crate) Ratio);
 
 impl Default for PressureFactor {
     fn default() -> Self {
-        Self(1.0)
+        Self(Ratio(1.0))
     }
-}
-
-impl JsonSchema for PressureFactor {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "PressureFactor".into()
-    }
-
-    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        // A pressure over half of a circumference: ∫ p dφ / ∫ p cos φ dφ of p = cos φ and of p = 1.
-        schemars::json_schema!({
-            "type": ["number", "string"],
-            "x-dimension": "a pure number",
-            "x-unit": "1",
-            "x-words": {"line": 1.0, "cosine": 4.0 / std::f64::consts::PI, "uniform": std::f64::consts::FRAC_PI_2},
-            "examples": ["uniform"],
-            "minimum": 1,
-            "maximum": 2,
-        })
-    }
-}
-
-/// Plates that rub where the chain runs out of line: between sprockets whose `lateral` places differ.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Lateral {
-    /// Coefficient of friction of plates on teeth and on each other [–].
-    #[serde(default)]
-    #[schemars(extend("minimum" = 0))]
-    pub(crate) friction: Option<Ratio>,
-    /// Lever from the pin to where they rub [m].
-    #[serde(default)]
-    #[schemars(extend("exclusiveMinimum" = 0))]
-    pub(crate) lever: Option<Length>,
-    /// Lateral play of the chain on its sprockets [m]: an offset within it costs nothing.
-    #[serde(default)]
-    #[schemars(extend("minimum" = 0))]
-    pub(crate) play: Option<Length>,
 }
 
 /// Rollers on their bushes.
@@ -163,24 +122,19 @@ pub(crate) struct Lateral {
 #[serde(deny_unknown_fields)]
 pub(crate) struct Roller {
     /// Mass of one roller [kg].
-    #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) mass: Option<Mass>,
     /// Moment of inertia of one roller [kg m²]; for free rollers.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) inertia: Option<Inertia>,
     /// Outer diameter of the bush [m]; for free rollers.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) bush_diameter: Option<Length>,
     /// Radial clearance [m]: radius of the roller's bore less outer radius of the bush; for free
     /// rollers.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) clearance: Option<Length>,
     /// Length of the roller [m]: on its bush, and on the teeth.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) length: Option<Length>,
     /// Contact of bush and roller, where it differs from `contact.rollers`.

@@ -6,11 +6,10 @@
 
 mod chain;
 mod contact;
-mod film;
 mod guide;
 mod housing;
 mod links;
-mod loss;
+mod lubricant;
 mod motion;
 mod route;
 mod run;
@@ -22,11 +21,10 @@ mod written;
 
 pub(crate) use chain::{Chain, End, NamedChain, Start};
 pub(crate) use contact::{Contact, Contacts, Flank};
-pub(crate) use film::Film;
 pub(crate) use guide::{Face, Guide, GuideSupport, TravelSide};
 pub(crate) use housing::Housing;
-pub(crate) use links::{ChainModel, Joint, Lateral, Link, Roller, Rollers};
-pub(crate) use loss::{Bearing, BearingFeed, Lubricant, ShaftDrag};
+pub(crate) use links::{ChainModel, Joint, Link, Roller, Rollers};
+pub(crate) use lubricant::Lubricant;
 pub(crate) use motion::{Motion, OrderTerm, StartSpeed, Torque};
 pub(crate) use route::{Adjust, Route};
 pub use run::RunDefaults;
@@ -65,14 +63,12 @@ pub(crate) struct SceneText {
     #[serde(default)]
     pub(crate) title: String,
     /// Acceleration of gravity (x, y) [m/s²].
-    #[serde(default)]
     pub(crate) gravity: Option<[Acceleration; 2]>,
     /// Whether the drive settles into static equilibrium under gravity and load before t = 0;
     /// absent: true.
     #[serde(default = "settle")]
     pub(crate) settle: bool,
     /// The chain, or the name of a chain of the catalogue, such as "16B-1".
-    #[serde(default)]
     pub(crate) chain: Option<Chain>,
     /// Several chains, each with a name and a route of its own, instead of `chain` and `route`.
     #[serde(default)]
@@ -106,10 +102,8 @@ pub(crate) struct SceneText {
     #[schemars(extend("maxItems" = 1000))]
     pub(crate) gears: Vec<Gears>,
     /// The oil; absent: parts that need a viscosity give their own.
-    #[serde(default)]
     pub(crate) lubricant: Option<Lubricant>,
     /// The housing; absent: centres stay where they are.
-    #[serde(default)]
     pub(crate) housing: Option<Housing>,
     /// Places of parameters that may be changed while the drive moves: `sprockets.NAME.load`, a factor on the loads of its shaft, also
     /// `shafts.NAME.load`; `tensioners.NAME.push.preload` and `tensioners.NAME.push.stiffness` of springs.
@@ -117,7 +111,6 @@ pub(crate) struct SceneText {
     #[schemars(extend("maxItems" = 100))]
     pub(crate) tunable: Vec<String>,
     /// How a closed chain lies around its sprockets; absent: around all sprockets, in file order.
-    #[serde(default)]
     pub(crate) route: Option<Route>,
     /// Settings of a run and channels to record, unless the caller gives others.
     #[serde(default)]

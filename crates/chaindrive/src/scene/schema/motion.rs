@@ -1,8 +1,6 @@
 //! Prescribed motions and shaft torques.
 
-use std::borrow::Cow;
-
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use chaindrive_quantities::{
@@ -41,7 +39,6 @@ pub(crate) enum Motion<Position, Rate> {
     /// A mean speed with sine terms, amplitude × (sin(2π f t + phase) − sin(phase)).
     Harmonics {
         /// Mean speed.
-        #[serde(default)]
         speed: Option<Rate>,
         /// The sine terms.
         terms: Vec<Term<Position>>,
@@ -50,11 +47,9 @@ pub(crate) enum Motion<Position, Rate> {
     /// amplitude × (sin(order α + phase) − sin(phase)), α its angle at its mean speed since the simulation began.
     Orders {
         /// Mean speed.
-        #[serde(default)]
         speed: Option<Rate>,
         /// Name of the shaft, or of a sprocket on it, whose turns count: its motion is given, with a mean speed, or gears join it with
         /// such a shaft. Absent: the shaft that this motion turns.
-        #[serde(default)]
         of: Option<String>,
         /// The orders.
         terms: Vec<OrderTerm<Position>>,
@@ -119,26 +114,6 @@ pub(crate) enum WorkingPoint {
     WorkingPoint,
 }
 
-impl JsonSchema for StartSpeed {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        "StartSpeed".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({
-            "type": ["number", "string"],
-            "x-dimension": "an angular speed",
-            "x-unit": "rad/s",
-            "x-words": {"working-point": "working-point"},
-            "examples": ["1450 rpm", "working-point"],
-        })
-    }
-}
-
 /// Turns after which a table of torques repeats: 1, or 2 for engines of four strokes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(transparent)]
@@ -199,7 +174,6 @@ pub(crate) enum Torque {
     /// Torques that repeat with the angle of a shaft, Σ amplitude × sin(order θ + phase), θ counted from where the simulation began.
     Orders {
         /// Name of the shaft, or of a sprocket on it, that θ belongs to; absent: the one that the torque acts on.
-        #[serde(default)]
         of: Option<String>,
         /// The orders.
         terms: Vec<OrderTerm<Moment>>,
@@ -214,7 +188,6 @@ pub(crate) enum Torque {
     /// A torque over the angle of a shaft within one turn or two, along straight lines; the last point joins the first.
     AngleTable {
         /// Name of the shaft, or of a sprocket on it, that the angle belongs to; absent: the one that the torque acts on.
-        #[serde(default)]
         of: Option<String>,
         /// Turns after which it repeats.
         #[serde(default)]

@@ -12,10 +12,8 @@ use chaindrive_quantities::{Angle, Force, Length, Ratio};
 pub(crate) struct Route {
     /// Names of sprockets and curved guides in the order in which the chain passes them, a
     /// sprocket first; absent: all sprockets, in file order.
-    #[serde(default)]
     pub(crate) stops: Option<Vec<String>>,
     /// Where the first sprocket stands within a tooth, 0 to 1 [–].
-    #[serde(default)]
     #[schemars(extend("minimum" = 0, "maximum" = 1))]
     pub(crate) phase: Option<Ratio>,
     /// Tension of every link before gravity and load [N].
@@ -23,25 +21,20 @@ pub(crate) struct Route {
     #[schemars(extend("minimum" = 0))]
     pub(crate) pretension: Force,
     /// Where the chain carries the pretension; absent: in the mean over a tooth that passes.
-    #[serde(default)]
     pub(crate) pretension_at: Option<PretensionAt>,
     /// How the pretension is made; absent: by shorter links.
     #[serde(default)]
     pub(crate) tighten: Tighten,
     /// Sag of the slack span in its middle [m] at rest under its own weight, made by what `adjust` moves, instead of a pretension;
     /// absent: none is asked for.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) sag: Option<Length>,
     /// Name of the span, "from-to", that hangs where the chain is longer than its way; absent: the one that runs to the first stop,
     /// or the longest without a guide where a guide lies along that.
-    #[serde(default)]
     pub(crate) slack_span: Option<String>,
     /// How the spans set off; absent: quiet.
-    #[serde(default)]
     pub(crate) start: Option<SpanStart>,
     /// The body that is moved until the links close without stress; absent: none.
-    #[serde(default)]
     pub(crate) adjust: Option<Adjust>,
 }
 

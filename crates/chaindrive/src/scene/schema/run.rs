@@ -1,10 +1,9 @@
 //! `[run]`: what a front end runs and records by default.
 
-use std::borrow::Cow;
-
 use chaindrive_mechanics::EventKinds;
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::Value as Json;
 
 use crate::Stepping;
 use crate::scene::accuracy::Quantity;
@@ -31,44 +30,42 @@ pub(crate) const STEPPING_KEYS: [&str; 4] = ["method", "step", "tolerance", "ons
 #[expect(clippy::struct_field_names, reason = "a run-in is called so in scenes")]
 pub(crate) struct Run {
     /// Duration of the run [s].
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) until: Option<Time>,
     /// Time simulated before t = 0, so that the record begins where the motion is steady: seconds [s], turns of a
     /// sprocket ("5 turns" of the first one, "5 turns of camshaft"), or "auto"; absent: "auto" for closed chains that a motion drives and whose inputs
     /// repeat, else nothing.
     #[serde(default)]
+    #[schemars(with = "Json", extend(
+        "type" = ["number", "string"],
+        "minimum" = 0,
+        "x-run-in" = true,
+        "examples" = ["auto", "0.5 s", "5 turns of camshaft"],
+    ))]
     pub(crate) run_in: Option<RunInText>,
     /// Time between two samples of the recording [s].
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) every: Option<Time>,
     /// Time stepping.
-    #[serde(default)]
     pub(crate) method: Option<Stepping>,
     /// Step of a method with a fixed step [s].
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) step: Option<Time>,
     /// Relative tolerance of a method under error control [–].
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
     pub(crate) tolerance: Option<Ratio>,
     /// Deepest penetration at which a contact may begin [m]: deeper steps are shortened; absent:
     /// contacts begin wherever the step lands.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) onset_depth: Option<Length>,
     /// Relative error of the tension, or of the losses, that method, step and onset depth are chosen for, 0 to 1; it takes the
     /// place of what is said about them. Absent: 0.01 of tensions, 0.05 of losses and impacts, unless one of them or a tolerance is given.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     pub(crate) accuracy: Option<Ratio>,
     /// Quantity that the accuracy is one of; absent: the tension.
     #[serde(default)]
     pub(crate) accuracy_of: Quantity,
     /// Channels to record.
-    #[serde(default)]
     pub(crate) record: Option<Vec<String>>,
     /// Contacts to log, each from touch to parting; absent: none.
     #[serde(default)]
@@ -107,25 +104,6 @@ impl From<RunInText> for Written {
             RunIn::Time(time) => Self::Seconds(time),
             RunIn::Turns { .. } | RunIn::Auto | RunIn::Usual => Self::Text(run_in.to_string()),
         }
-    }
-}
-
-impl JsonSchema for RunInText {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> Cow<'static, str> {
-        "RunIn".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({
-            "type": ["number", "string"],
-            "minimum": 0,
-            "x-run-in": true,
-            "examples": ["auto", "0.5 s", "5 turns of camshaft"],
-        })
     }
 }
 

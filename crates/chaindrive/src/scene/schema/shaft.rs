@@ -1,9 +1,10 @@
 //! Shafts, couplings and gears.
 
+use chaindrive_mechanics::{Bearing, ShaftDrag};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Bearing, Motion, ShaftDrag, StartSpeed, Torque};
+use super::{Motion, StartSpeed, Torque, Written};
 use chaindrive_quantities::{Angle, AngularDamping, AngularSpeed, AngularStiffness, Inertia};
 
 /// A body that turns about one axis: it carries sprockets of any chains, rigidly, or none, such as a wheel behind a coupling.
@@ -19,15 +20,16 @@ pub(crate) struct Shaft {
     #[schemars(extend("maxItems" = 1000))]
     pub(crate) sprockets: Vec<String>,
     /// Rotation given in time. Excludes `drive`, `load` and `speed`.
-    #[serde(default)]
     pub(crate) motion: Option<Motion<Angle, AngularSpeed>>,
     /// Moment of inertia [kg m²] beside those of its sprockets; absent: none.
-    #[serde(default)]
     #[schemars(extend("minimum" = 0))]
     pub(crate) inertia: Option<Inertia>,
     /// Speed of a shaft without `motion` where the simulation begins, before the run-in [rad/s]: a number, or "working-point", at which
     /// all torques on what it is joined with balance. Absent: the speed of what it is joined with, or rest.
-    #[serde(default)]
+    #[schemars(
+        with = "Option<AngularSpeed>",
+        extend("x-words" = {"working-point": "working-point"}, "examples" = ["1450 rpm", "working-point"]),
+    )]
     pub(crate) speed: Option<StartSpeed>,
     /// Torques that drive the shaft.
     #[serde(default)]
@@ -36,11 +38,9 @@ pub(crate) struct Shaft {
     #[serde(default)]
     pub(crate) load: Vec<Torque>,
     /// Friction of the bearings beside those at its sprockets, a stated torque; absent: none.
-    #[serde(default)]
-    pub(crate) bearing: Option<Bearing>,
+    pub(crate) bearing: Option<Written<Bearing>>,
     /// Drag of oil and air on it beside that at its sprockets; absent: none.
-    #[serde(default)]
-    pub(crate) drag: Option<ShaftDrag>,
+    pub(crate) drag: Option<Written<ShaftDrag>>,
 }
 
 /// A torsional spring and damper between two shafts, without stress as assembled.

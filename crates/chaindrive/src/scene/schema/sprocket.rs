@@ -1,11 +1,12 @@
 //! Sprockets, their teeth and what holds them.
 
+use chaindrive_mechanics::{Bearing, ShaftDrag};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Bearing, Contact, Flank, Motion, ShaftDrag, StartSpeed, Torque};
+use super::{Contact, Flank, Motion, StartSpeed, Torque, Written};
 use chaindrive_quantities::{
-    Angle, AngularSpeed, Damping, Inertia, Length, Mass, Speed, Stiffness,
+    Angle, AngularSpeed, Damping, Inertia, Length, Mass, Ratio, Speed, Stiffness,
 };
 
 /// A toothed wheel.
@@ -18,7 +19,6 @@ pub(crate) struct Sprocket {
     /// Name, unique among sprockets and guides.
     pub(crate) name: String,
     /// Name of the chain that it belongs to, where there are several and no route passes it.
-    #[serde(default)]
     pub(crate) chain: Option<String>,
     /// Number of teeth.
     #[schemars(extend("minimum" = 5, "maximum" = 600))]
@@ -31,23 +31,22 @@ pub(crate) struct Sprocket {
     pub(crate) side: Side,
     /// Depth of the steel below the tooth gaps [m], down to the bore or the inner edge of the rim, for the `stack` of its contact; absent:
     /// a solid body, which does not yield.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) rim: Option<Length>,
     /// Tooth form; absent: ISO 606 half-way between the extreme forms.
-    #[serde(default)]
     pub(crate) tooth: Option<Tooth>,
     /// Rotation given in time. Excludes `drive`, `load` and `speed`.
-    #[serde(default)]
     pub(crate) motion: Option<Motion<Angle, AngularSpeed>>,
     /// Moment of inertia about the centre, shaft included [kg m²]; needed without `motion`. Of one that sits on one of the
     /// `shafts`: its own, and none if absent.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) inertia: Option<Inertia>,
     /// Speed of a shaft without `motion` where the simulation begins, before the run-in [rad/s]: a number, or "working-point", at which
     /// all torques on what it is joined with balance. Absent: the speed of what it is joined with, or rest.
-    #[serde(default)]
+    #[schemars(
+        with = "Option<AngularSpeed>",
+        extend("x-words" = {"working-point": "working-point"}, "examples" = ["1450 rpm", "working-point"]),
+    )]
     pub(crate) speed: Option<StartSpeed>,
     /// Torques that drive the shaft.
     #[serde(default)]
@@ -56,23 +55,18 @@ pub(crate) struct Sprocket {
     #[serde(default)]
     pub(crate) load: Vec<Torque>,
     /// Friction of the bearings of its shaft; absent: none.
-    #[serde(default)]
-    pub(crate) bearing: Option<Bearing>,
+    pub(crate) bearing: Option<Written<Bearing>>,
     /// Drag of oil and air on its shaft; absent: none.
-    #[serde(default)]
-    pub(crate) drag: Option<ShaftDrag>,
+    pub(crate) drag: Option<Written<ShaftDrag>>,
     /// Mass [kg]; needed where the centre can move under forces.
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) mass: Option<Mass>,
     /// Support of the centre; absent: a fixed bearing.
-    #[serde(default)]
     pub(crate) support: Option<Support>,
     /// Contact with the rollers, where it differs from `contact.teeth`.
     #[serde(default)]
     pub(crate) contact: Contact,
     /// Differences on the flanks of the teeth, instead of `contact.flanks`.
-    #[serde(default)]
     pub(crate) flank: Option<Flank>,
     /// Distance of the centre of the teeth from the axis [m]: half of the run-out that a dial shows. Absent: none.
     #[serde(default)]
@@ -87,10 +81,8 @@ pub(crate) struct Sprocket {
     #[serde(default)]
     pub(crate) lateral: Length,
     /// Errors of the places of the tooth gaps; absent: none.
-    #[serde(default)]
     pub(crate) gap_errors: Option<GapErrors>,
     /// Angle of one tooth gap [rad], for a wheel that no route passes.
-    #[serde(default)]
     pub(crate) gap_angle: Option<Angle>,
 }
 
@@ -154,13 +146,18 @@ pub(crate) enum Tooth {
     Iso606 {
         /// Gap form between the minimum (0) and the maximum (1) [–], or "min", "mid", "max";
         /// absent: mid.
-        #[serde(default)]
-        gap: GapForm,
+        #[serde(default = "mid")]
+        #[schemars(extend(
+            "x-words" = {"min": 0.0, "mid": 0.5, "max": 1.0},
+            "examples" = ["mid"],
+            "minimum" = 0,
+            "maximum" = 1,
+        ))]
+        gap: Ratio,
         /// Tip diameter; absent: mid.
         #[serde(default)]
         tip: TipForm,
         /// Tip diameter [m], instead of `tip`.
-        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         tip_diameter: Option<Length>,
         /// Where the seat is centred; absent: bottom.
@@ -173,21 +170,18 @@ pub(crate) enum Tooth {
         #[serde(default)]
         tip: TipForm,
         /// Tip diameter [m], instead of `tip`.
-        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         tip_diameter: Option<Length>,
     },
     /// A circular seat with straight flanks.
     Circular {
         /// Radius of the seat [m], at least that of the roller.
-        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         seat_radius: Option<Length>,
         /// Tip diameter; absent: mid.
         #[serde(default)]
         tip: TipForm,
         /// Tip diameter [m], instead of `tip`.
-        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         tip_diameter: Option<Length>,
         /// Where the seat is centred; absent: bottom.
@@ -207,43 +201,14 @@ pub(crate) enum Tooth {
         /// Points (x, y) [m].
         points: Vec<[Length; 2]>,
         /// How far the arcs may stray from the points [m].
-        #[serde(default)]
         #[schemars(extend("exclusiveMinimum" = 0))]
         tolerance: Option<Length>,
     },
 }
 
-/// Gap form between the ISO extremes.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-#[serde(transparent)]
-pub(crate) struct GapForm(pub(crate) f64);
-
-impl Default for GapForm {
-    fn default() -> Self {
-        Self(0.5)
-    }
-}
-
-impl JsonSchema for GapForm {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "GapForm".into()
-    }
-
-    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        schemars::json_schema!({
-            "type": ["number", "string"],
-            "x-dimension": "a pure number",
-            "x-unit": "1",
-            "x-words": {"min": 0.0, "mid": 0.5, "max": 1.0},
-            "examples": ["mid"],
-            "minimum": 0,
-            "maximum": 1,
-        })
-    }
+/// Half-way between the extremes.
+fn mid() -> Ratio {
+    Ratio(0.5)
 }
 
 /// Tip diameter within the limits of ISO 606.

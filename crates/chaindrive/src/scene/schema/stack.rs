@@ -12,10 +12,8 @@ use chaindrive_quantities::Ratio;
 #[serde(deny_unknown_fields)]
 pub(crate) struct Stack {
     /// How the outer plates hold the ends of the pins: between the two.
-    #[serde(default)]
     pub(crate) pin_ends: Option<BeamEnds>,
     /// Force on the tooth, in breaking loads, at which contacts of roller, bush and pin become springs [–].
-    #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
     pub(crate) load: Option<Ratio>,
 }

@@ -4,16 +4,18 @@ use std::borrow::Cow;
 use std::marker::PhantomData;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
 /// The keys of a `T` in a scene, in SI units; those with a default may be absent.
 ///
 /// The struct of a law has name, quantity, range and sentence of every parameter, and the schema of scenes is made from it. Only defaults are a
 /// scene's own: they are filled in when the scene is resolved.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(transparent, bound = "")]
 pub(crate) struct Written<T> {
     pub(crate) keys: Json,
+    #[serde(skip)]
     law: PhantomData<fn() -> T>,
 }
 
@@ -24,33 +26,12 @@ impl<T> Written<T> {
     }
 }
 
-impl<T> Clone for Written<T> {
-    fn clone(&self) -> Self {
+impl<T> Default for Written<T> {
+    fn default() -> Self {
         Self {
-            keys: self.keys.clone(),
+            keys: Json::default(),
             law: PhantomData,
         }
-    }
-}
-
-impl<T> PartialEq for Written<T> {
-    fn eq(&self, other: &Self) -> bool {
-        self.keys == other.keys
-    }
-}
-
-impl<'de, T> Deserialize<'de> for Written<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Ok(Self {
-            keys: Json::deserialize(deserializer)?,
-            law: PhantomData,
-        })
-    }
-}
-
-impl<T> Serialize for Written<T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.keys.serialize(serializer)
     }
 }
 

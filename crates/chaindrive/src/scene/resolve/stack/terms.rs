@@ -6,56 +6,41 @@ use chaindrive_mechanics::{
 };
 
 use super::super::Findings;
+use super::super::cursor::Cursor;
 use super::super::law::steel;
 use super::{Parts, yields};
 use crate::catalogue::Number;
 use crate::scene::defaults;
 use crate::scene::schema;
-
-/// Parts of the stack behind the teeth of a sprocket that a scene asks for.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Asked<'a> {
-    pub(crate) stack: schema::Stack,
-    /// Its place.
-    pub(crate) path: &'a str,
-    /// Depth of the steel below the gaps \[m\]; none for a solid body.
-    pub(crate) rim: Option<f64>,
-}
+use chaindrive_quantities::Length;
 
 /// A dimension that must be known: its key, its value, and what it is called.
 type Needed = (&'static str, Option<f64>, &'static str);
 
 impl Parts {
-    /// All parts behind the teeth of a sprocket that yield. None where a dimension is missing, which is refused.
+    /// All parts behind the teeth of a sprocket that yield, with the steel of a rim of some depth below the gaps. None where a dimension is
+    /// missing, which is refused.
     pub(crate) fn stack(
         &self,
-        asked: Asked<'_>,
-        findings: &mut Findings<'_>,
+        text: schema::Stack,
+        rim: Option<Length>,
+        mut at: Cursor<'_, '_>,
     ) -> Option<ToothStack> {
-        let Asked { stack, path, rim } = asked;
-        let place = format!("{path}.pin_ends");
-        let pin_ends = findings.or_chosen(stack.pin_ends, &place, &defaults::PIN_ENDS);
-        let load = stack.load.map(|it| it.0);
-        let load = findings.or_default(load, &format!("{path}.load"), &defaults::STACK_LOAD);
+        let mut ends = at.key("pin_ends");
+        let pin_ends = ends.or_chosen(text.pin_ends, &defaults::PIN_ENDS);
+        let load = at.key("load").or(text.load, &defaults::STACK_LOAD);
+        let findings = at.findings;
         let [breaking, inner, outer] = self.needed(
             [
                 ("breaking_load", self.breaking_load(), "least breaking load"),
                 (
                     "inner.mass",
-                    self.link(
-                        self.text.inner,
-                        |it| it.mass.map(|it| it.0),
-                        Number::InnerMass,
-                    ),
+                    self.link(self.text.inner, |it| it.mass, Number::InnerMass),
                     "mass of an inner link",
                 ),
                 (
                     "outer.mass",
-                    self.link(
-                        self.text.outer,
-                        |it| it.mass.map(|it| it.0),
-                        Number::OuterMass,
-                    ),
+                    self.link(self.text.outer, |it| it.mass, Number::OuterMass),
                     "mass of an outer link",
                 ),
             ],
@@ -63,7 +48,7 @@ impl Parts {
         )?;
         let load = load * breaking;
         let roller = self.text.roller.as_ref().and_then(|it| it.mass);
-        let roller = self.number(roller.map(|it| it.0), Number::RollerMass);
+        let roller = self.number(roller, Number::RollerMass);
         let masses = JointMasses {
             roller: roller.filter(|_| self.has_rollers()).unwrap_or(0.0),
             inner,
@@ -77,7 +62,7 @@ impl Parts {
             terms.extend(self.of_joint(load, pin_ends, masses, findings)?);
         }
         if let Some(depth) = rim {
-            terms.push(self.of_rim(depth, findings)?);
+            terms.push(self.of_rim(depth.0, findings)?);
         }
         // Strands side by side yield together.
         for term in &mut terms {
@@ -112,17 +97,17 @@ impl Parts {
     }
 
     fn breaking_load(&self) -> Option<f64> {
-        let given = self.text.breaking_load.map(|it| it.0);
+        let given = self.text.breaking_load;
         // That of strands is the load of them all.
-        let of_strand = given.map(|it| it / self.strands);
+        let of_strand = given.map(|it| it.0 / self.strands);
         self.number(of_strand, Number::BreakingLoad)
     }
 
     /// A property of a link, as the scene has it or the catalogue.
-    fn link(
+    fn link<T: Into<f64>>(
         &self,
         link: Option<schema::Link>,
-        property: fn(schema::Link) -> Option<f64>,
+        property: fn(schema::Link) -> Option<T>,
         of: Number,
     ) -> Option<f64> {
         self.number(link.and_then(property), of)
@@ -136,7 +121,7 @@ impl Parts {
 
     /// Mass that strikes, in proportion to that of the links of the scene.
     fn striking(&self, masses: JointMasses) -> StrikingMass {
-        let inertia = |link, of| self.link(link, |it| it.inertia.map(|it| it.0), of);
+        let inertia = |link, of| self.link(link, |it| it.inertia, of);
         let inner = inertia(self.text.inner, Number::InnerInertia);
         let outer = inertia(self.text.outer, Number::OuterInertia);
         let hinged = || {
@@ -157,7 +142,7 @@ impl Parts {
                 BUSH.of(self.bush_diameter()),
                 PLAY.of(self.roller_play()),
                 WIDTH.of(length),
-                ROLLER.of(self.text.roller_diameter.map(|it| it.0)),
+                ROLLER.of(self.text.roller_diameter),
             ],
             findings,
         )?;
@@ -191,7 +176,7 @@ impl Parts {
         let bush = if self.has_rollers() {
             self.bush_diameter()
         } else {
-            self.text.roller_diameter.map(|it| it.0)
+            self.text.roller_diameter.map(f64::from)
         };
         let [bush, pin, play, length, width] = self.needed(
             [
@@ -243,9 +228,9 @@ impl Parts {
     fn of_rim(&self, depth: f64, findings: &mut Findings<'_>) -> Option<StackTerm> {
         let [roller, width, pitch] = self.needed(
             [
-                ROLLER.of(self.text.roller_diameter.map(|it| it.0)),
+                ROLLER.of(self.text.roller_diameter),
                 WIDTH.of(self.roller_length()),
-                ("pitch", self.text.pitch.map(|it| it.0), "pitch"),
+                ("pitch", self.text.pitch.map(f64::from), "pitch"),
             ],
             findings,
         )?;
@@ -285,7 +270,7 @@ const ROLLER: Dimension = Dimension {
 };
 
 impl Dimension {
-    fn of(self, value: Option<f64>) -> Needed {
-        (self.key, value, self.what)
+    fn of(self, value: Option<impl Into<f64>>) -> Needed {
+        (self.key, value.map(Into::into), self.what)
     }
 }
