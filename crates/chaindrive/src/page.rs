@@ -12,7 +12,7 @@ mod losses;
 mod numerics;
 mod sections;
 
-use std::fmt;
+use std::fmt::{self, Write as _};
 
 use serde::Serialize;
 
@@ -100,11 +100,11 @@ impl fmt::Display for Section {
         let mut text = self.title.clone();
         if !self.rows.is_empty() {
             for line in [&self.columns].into_iter().chain(&self.rows) {
-                text += &format!("\n  {}", line.join("\t"));
+                write!(text, "\n  {}", line.join("\t"))?;
             }
         }
         for sentence in &self.sentences {
-            text += &format!("\n  {sentence}");
+            write!(text, "\n  {sentence}")?;
         }
         f.write_str(&aligned(&text, 0))
     }

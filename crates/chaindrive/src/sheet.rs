@@ -41,7 +41,7 @@ fn laid(line: &[&str], table: &[Vec<&str>], names: usize) -> String {
     let cells = |column: usize| table.iter().filter_map(move |line| line.get(column));
     let figures = cells(last).filter(|it| is_figure(it)).count();
     // The heading is none of them.
-    let ends_in_words = last == 1 || 2 * figures <= cells(last).count() - 1;
+    let ends_in_words = last == 1 || 2 * figures < cells(last).count();
     let gap = if last == 1 { " " } else { "  " };
     let cell = |(column, cell): (usize, &&str)| {
         let widths = cells(column).map(|it| it.chars().count());

@@ -11,7 +11,7 @@
 mod duty;
 mod reason;
 
-use std::fmt;
+use std::fmt::{self, Write as _};
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -232,10 +232,10 @@ impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut text = format!("verdict\t{}", self.trust.name());
         for reason in &self.reasons {
-            text += &format!("\n  {}\t{reason}", reason.trust().name());
+            write!(text, "\n  {}\t{reason}", reason.trust().name())?;
         }
         for note in &self.notes {
-            text += &format!("\n  note\t{note}");
+            write!(text, "\n  note\t{note}")?;
         }
         f.write_str(&aligned(&text, NAMES))
     }

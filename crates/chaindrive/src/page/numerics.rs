@@ -22,7 +22,7 @@ pub fn numerics(
     let _ = told(&mut text, verdict, summary, simulation);
     let mut text = aligned(text.trim_end(), NAMES);
     if let Some(choice) = choice {
-        text += &format!("\n{choice}");
+        let _ = write!(text, "\n{choice}");
     }
     match judgement {
         None | Some(Judgement::SwitchedOff) => text,

@@ -1,6 +1,7 @@
 //! `chaindrive scenes`, `channels`, `catalogue` and `--version`: what there is.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 
 use chaindrive::catalogue::{CatalogueChain, Number, catalogue as chains};
 use chaindrive::figure::{Measure, with_digits};
@@ -226,12 +227,13 @@ pub(crate) fn catalogue(arguments: &Catalogue) -> Result<(), Failure> {
         return entry(chain);
     }
     let headings = SHOWN.map(|(_, heading, _)| heading);
+    // Texts take whatever is written.
     let mut text = format!("chain\tANSI\tkind\t{}", headings.join("\t"));
     for chain in chains() {
-        text += &format!("\n{}\t{}\t{}", chain.name, chain.ansi, chain.kind);
+        let _ = write!(text, "\n{}\t{}\t{}", chain.name, chain.ansi, chain.kind);
         for (number, _, per) in SHOWN {
             let value = chain.number(number).map(|it| with_digits(it * per, DIGITS));
-            text += &format!("\t{}", value.as_deref().unwrap_or("–"));
+            let _ = write!(text, "\t{}", value.as_deref().unwrap_or("–"));
         }
     }
     print(aligned(&text, 0))?;
@@ -255,10 +257,10 @@ fn entry(chain: &CatalogueChain) -> Result<(), Failure> {
         let value = chain.number(number).map(|it| told(number, it));
         let (name, value) = (number.name(), value.as_deref().unwrap_or("–"));
         let (what, source) = (number.description(), chain.status(number.status()));
-        text += &format!("\n  {name}\t{value}\t{what} [{source}]");
+        let _ = write!(text, "\n  {name}\t{value}\t{what} [{source}]");
     }
     if !chain.makers_differ.is_empty() {
-        text += &format!("\n  makers differ: {}", chain.makers_differ);
+        let _ = write!(text, "\n  makers differ: {}", chain.makers_differ);
     }
     print(aligned(&text, 0))
 }
