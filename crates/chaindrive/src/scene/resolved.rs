@@ -313,7 +313,7 @@ fn in_order(value: &mut Json, schema: &Json, reading: &Reading<'_>) {
                 sorted.sort_by_key(|(key, _)| place(key));
                 *entries = sorted.into_iter().collect();
             }
-            for (key, value) in entries.iter_mut() {
+            for (key, value) in entries {
                 in_order(value, &table["properties"][key.as_str()], reading);
             }
         }
