@@ -352,7 +352,7 @@ mod tests {
 
     #[test]
     fn a_version_keeps_its_values() {
-        let changed = Default {
+        let changed = Default::<f64> {
             keys: &[],
             unit: "1",
             basis: Assumed("a test"),

@@ -285,7 +285,10 @@ fn prune(value: &mut Json) {
     }
 }
 
-/// Brings the keys of tables into the order of the schema.
+/// Laws that are written in the order of the schema; the keys of others stand as the scene has them, and then what is filled in.
+const IN_ORDER: [&str; 4] = ["Film", "Bearing", "ShaftDrag", "Lateral"];
+
+/// Brings the keys of such laws into order.
 fn in_order(value: &mut Json, schema: &Json, reading: &Reading<'_>) {
     let core = reading.core(schema);
     let table = match Expected::of(core) {
@@ -297,15 +300,22 @@ fn in_order(value: &mut Json, schema: &Json, reading: &Reading<'_>) {
     };
     match value {
         Json::Object(entries) => {
-            let properties = table.get("properties").and_then(Json::as_object);
-            let mut found = std::mem::take(entries);
-            for (key, property) in properties.into_iter().flatten() {
-                if let Some(mut value) = found.shift_remove(key) {
-                    in_order(&mut value, property, reading);
-                    entries.insert(key.clone(), value);
-                }
+            let choices = schema["anyOf"].as_array().into_iter().flatten();
+            let mut names = choices.chain([schema]).filter_map(|it| it["$ref"].as_str());
+            if names.any(|name| {
+                IN_ORDER
+                    .iter()
+                    .any(|law| name.ends_with(&format!("/{law}")))
+            }) {
+                let keys = table["properties"].as_object();
+                let place = |key: &str| keys?.keys().position(|known| known == key);
+                let mut sorted: Vec<_> = std::mem::take(entries).into_iter().collect();
+                sorted.sort_by_key(|(key, _)| place(key));
+                *entries = sorted.into_iter().collect();
             }
-            entries.append(&mut found);
+            for (key, value) in entries {
+                in_order(value, &table["properties"][key.as_str()], reading);
+            }
         }
         Json::Array(items) => {
             for item in items {
