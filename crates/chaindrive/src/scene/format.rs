@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::defaults;
 use super::schema::SceneText;
+use super::titles;
 use crate::laws;
 
 /// JSON Schema of the scene format (draft 2020-12), for editors and front ends.
@@ -21,6 +22,7 @@ pub fn schema() -> Value {
         "description": chain["description"],
         "anyOf": [{"type": "string", "examples": ["16B-1"]}, {"$ref": chain["$ref"]}],
     });
+    titles::name_members(&mut schema);
     schema
 }
 

@@ -70,6 +70,7 @@ mod resolved;
 mod run_in;
 mod schema;
 mod suggest;
+mod titles;
 mod tree;
 mod validate;
 

@@ -339,8 +339,7 @@ mod tests {
             let sigma = 1.0 / (1.0 - phi * phi).sqrt();
             let quantile = 2.326_348 * sigma;
             let true_values = [0.0, sigma, -quantile, quantile];
-            // As many samples of each.
-            let seeds = 1..=(1_000_000 / count as u64).min(300);
+            let seeds = 1..=(2_500_000 / count as u64).min(300);
             let found = judged(
                 true_values,
                 seeds.map(|seed| of(series(seed, phi, count), 25.0, 1e-9)),
