@@ -143,7 +143,7 @@ class Span(NamedTuple):
     length: float
     """Length between the points of tangency [m]."""
     links: int
-    """Links between the last roller seated before and the first one behind."""
+    """Links between the last roller seated before and the first one after."""
     leaves: tuple[float, float]
     """Point of tangency where the chain leaves (x, y) [m]."""
     arrives: tuple[float, float]
@@ -213,7 +213,7 @@ class Layout(NamedTuple):
     stops: tuple[Stop, ...]
     """Sprockets and guides, in path order."""
     spans: tuple[Span, ...]
-    """Straight spans, each behind its stop."""
+    """Straight spans, each after its stop."""
     faces: tuple[Face, ...]
     """Faces of the guides that were placed by share."""
     fits: tuple[Fit, ...]
@@ -287,7 +287,7 @@ def close(
         Number of links; it has to be given.
     move
         Name of the stop that moves: a sprocket along a direction, of a guide the bow, of an idler
-        the wrap; the sprocket behind the first stop that has the greatest effect when absent.
+        the wrap; the sprocket after the first stop that has the greatest effect when absent.
     along
         Direction (x, y), of any length; that of the greatest effect when absent.
 

@@ -105,7 +105,7 @@ class Simulation:
         Parameters
         ----------
         time
-            Time [s], not before the last reading; it may lie behind the end that the scene names.
+            Time [s], not before the last reading; it may lie after the end that the scene names.
 
         Raises
         ------

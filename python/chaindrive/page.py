@@ -73,7 +73,7 @@ def section(told: dict[str, Any], level: int = 4) -> str:
     """Return a section as HTML, its heading of a level."""
     parts = [f"<h{level}>{html.escape(_heading(told['title']))}</h{level}>"]
     if told["rows"]:
-        # Words behind the names stand left as well: "drives", "mm".
+        # Words after the names stand left as well: "drives", "mm".
         words = 1 + (not any(it.isdigit() for it in told["rows"][0][1]))
         parts.append(table(told["columns"], told["rows"], len(told["columns"]) - words))
     parts += [f"<p>{html.escape(sentence)}</p>" for sentence in told["sentences"]]

@@ -166,7 +166,7 @@ def _picture(title: str, draw: Callable[[Axes], object]) -> str:
     )
 
 
-#: A line of a scene in full: key, value, and behind them its unit and source.
+#: A line of a scene in full: key, value, and after them its unit and source.
 _LINE = re.compile(r"^(?P<key>[\w\-]+) = (?P<value>.*?)(?: # (?P<source>.*))?$")
 #: A number with more digits than anybody gave.
 _LONG = re.compile(r"-?\d+\.\d{8,}")

@@ -165,7 +165,7 @@ def simulate(
         attribute, and ``chaos_note`` says it in words. The span tensions of this run differ from
         the exact ones by 1 % at ``waveform_horizon`` [s], those of the links at
         ``waveform_horizon_link_tension`` [s]. Where that is before the end of the run, variables
-        over time have an attribute ``waveform_horizon`` too, samples behind it are for statistics
+        over time have an attribute ``waveform_horizon`` too, samples after it are for statistics
         only, and ``waveform_horizon_of`` names the variable on whose errors it was found.
 
     Raises
@@ -230,7 +230,7 @@ def resume(
     """Carry on a run that was stopped or killed, or a complete one to a later end.
 
     Ctrl-C and SIGTERM leave a checkpoint in the result of a run, and runs with `checkpoint_every`
-    leave them under way and at their end. What the result holds behind its checkpoint is simulated
+    leave them under way and at their end. What the result holds after its checkpoint is simulated
     again: in the end it is that of a run that was never stopped, to the last bit, but for the wall
     times.
 

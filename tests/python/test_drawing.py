@@ -17,7 +17,7 @@ from drives import random_drive
 
 import chaindrive as cd
 
-# Coordinates have four digits behind the point of a millimetre; both ends of a distance round [m].
+# Coordinates have four digits after the point of a millimetre; both ends of a distance round [m].
 DIGITS = 2e-7
 
 _TOKEN = re.compile(r"[MLAZ]|-?[0-9.]+(?:e-?[0-9]+)?")

@@ -1,4 +1,4 @@
-"""Intervals of statistics behind a run-in, against references ten times as long."""
+"""Intervals of statistics after a run-in, against references ten times as long."""
 
 import numpy as np
 import pytest

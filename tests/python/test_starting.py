@@ -62,7 +62,7 @@ def test_the_command_imports_the_core_only(argument: str) -> None:
     assert not imported(code) & (SLOW | {"numpy"})
 
 
-# Sends Ctrl-C at the n-th import behind the first line of the command.
+# Sends Ctrl-C at the n-th import after the first line of the command.
 INTERRUPTED_AT = """
 import signal, sys
 left = int(sys.argv.pop(1))

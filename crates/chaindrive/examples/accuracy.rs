@@ -2,13 +2,13 @@
 
 use std::io::Write;
 
-use chaindrive::{Given, Memory, Request, Scene, Settings, execute};
+use chaindrive::{Memory, Request, Scene, SettingValue, Settings, execute};
 
 pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let settings = Settings::default()
-        .with("until", Given::Number(20e-3))
-        .with("run_in", Given::Number(0.0))
-        .with("accuracy", Given::Number(0.02));
+        .with("until", SettingValue::Number(20e-3))
+        .with("run_in", SettingValue::Number(0.0))
+        .with("accuracy", SettingValue::Number(0.02));
     let request = Request::new(&Scene::preset("marine_two_sprockets")?, &settings)?;
     let report = execute(&request, &mut Memory::default(), &|| false)?;
     let mut out = std::io::stdout();

@@ -4,7 +4,9 @@
 use std::cell::Cell;
 use std::io::Write;
 
-use chaindrive::{Given, Memory, Onlooker, Request, Scene, Settings, Simulation, Stop, execute};
+use chaindrive::{
+    Memory, Onlooker, Request, Scene, SettingValue, Settings, Simulation, Stop, execute,
+};
 use serde_json::{Value, json};
 
 /// A drive as the program knows it.
@@ -63,9 +65,9 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let scene = Scene::from_data(&conveyor.scene().to_string(), "conveyor")?;
     let settings = Settings::default()
-        .with("until", Given::Number(20e-3))
-        .with("run_in", Given::Number(0.0))
-        .with("record", Given::Names(vec!["span_tension".into()]));
+        .with("until", SettingValue::Number(20e-3))
+        .with("run_in", SettingValue::Number(0.0))
+        .with("record", SettingValue::Names(vec!["span_tension".into()]));
     let window = Window {
         shown: Cell::new(0),
         stop: false,

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use chaindrive::Scene;
-use chaindrive::sweep::{Go, Outcome, Quantity, Setting, Statistic, Sweep};
+use chaindrive::sweep::{Go, Outcome, ResultQuantity, Setting, Statistic, Sweep};
 
 pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scene = Scene::preset("marine_two_sprockets")?
@@ -23,7 +23,7 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (variant, outcome) in outcomes.iter().enumerate() {
         let told = match outcome {
             Outcome::Done(account) => {
-                let wanted = Quantity::Statistic(Statistic::SpanTensionMax);
+                let wanted = ResultQuantity::Statistic(Statistic::SpanTensionMax);
                 let entry = account.entries.iter().find(|it| it.quantity == wanted);
                 let spans = entry.map_or(&[][..], |entry| &entry.values);
                 format!("{spans:.0?} N")

@@ -17,8 +17,8 @@ mod tolerance;
 use chaindrive_geometry::mesh_frequency;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{
-    Adjust, Assembled, Capacity, Chain, Clash, Drive, Fight, Fitting, Flow, GuideSupport, Layout,
-    Observation, PlacedChain, Rotation, Statics, Unrated,
+    Adjust, Assembled, Capacity, Chain, Clash, Drive, Fitting, Flow, GuideSupport, Layout,
+    MissingRating, MotionConflict, Observation, PlacedChain, Rotation, Statics,
 };
 use schemars::JsonSchema;
 use serde::ser::SerializeMap;
@@ -285,7 +285,7 @@ impl Description {
 pub fn warnings(assembled: &Assembled, until: f64) -> Vec<String> {
     let clashes = assembled.warnings.iter().map(Clash::to_string);
     let fights = assembled.drive.fights(0.0, until);
-    let fights = fights.iter().map(Fight::to_string);
+    let fights = fights.iter().map(MotionConflict::to_string);
     clashes.chain(fights).chain(overloads(assembled)).collect()
 }
 
@@ -421,7 +421,7 @@ fn closing(drive: &Drive, placed: &PlacedChain, fitting: &Fitting) -> Closing {
 /// The rating at the smallest sprocket that takes part; idlers do not.
 fn rated_power(drive: &Drive, placed: &PlacedChain, start: &Observation) -> Option<RatedPower> {
     let strength = &placed.chain.strength;
-    if let Capacity::Unknown(Unrated::NoType) = strength.capacity {
+    if let Capacity::Unknown(MissingRating::NoType) = strength.capacity {
         return None;
     }
     let takes_part = |shaft: usize| {

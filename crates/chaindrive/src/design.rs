@@ -20,7 +20,7 @@ const ELONGATIONS: [f64; 9] = [0.0, 0.001, 0.002, 0.003, 0.005, 0.0075, 0.01, 0.
 /// First step of a search for a place \[pitches\].
 const STEP: f64 = 0.1;
 
-/// How far a search for a place goes \[pitches\].
+/// Range in which a position is searched for \[pitches\].
 const REACH: f64 = 20.0;
 
 /// A closed chain, laid out.
@@ -44,7 +44,7 @@ pub struct ChainLayout {
     pub counts: Counts,
     /// Sprockets and guides, in path order.
     pub stops: Vec<StopLayout>,
-    /// Straight spans, each behind its stop.
+    /// Straight spans, each after its stop.
     pub spans: Vec<SpanLayout>,
     /// Faces of guides that lie on spans by share; none of those that a scene places by coordinates.
     pub faces: Vec<FaceLayout>,
@@ -101,7 +101,7 @@ pub struct SpanLayout {
     pub direction: f64,
     /// Length between the points of tangency \[m\].
     pub length: f64,
-    /// Links between the last roller seated before and the first one behind.
+    /// Links between the last roller seated before and the first one after.
     pub links: u32,
     /// Point of tangency where the chain leaves (x, y) \[m\].
     pub leaves: [f64; 2],
@@ -162,9 +162,9 @@ struct Mover<'m> {
     reach: f64,
     /// Whether it turns, and its travel is an angle.
     turns: bool,
-    /// Where it stands.
+    /// Its travel.
     travel: f64,
-    /// Whether somebody said that it should move.
+    /// Whether the scene says that it adjusts.
     adjusts: bool,
 }
 
@@ -525,7 +525,7 @@ impl Chain<'_> {
             .collect()
     }
 
-    /// Where the links asked for close, and the numbers next to the length of the route.
+    /// Positions at which the links asked for close, and those for the numbers of links next to the length of the route.
     fn fits(&self, counts: &Counts, mover: &mut Mover<'_>) -> Vec<Fit> {
         let mut wanted = vec![
             counts.even_below,
@@ -563,7 +563,7 @@ impl Chain<'_> {
         worn.collect()
     }
 
-    /// Where a body stands when so many links of a strain close.
+    /// Travel of a body at which a number of links with a strain closes.
     fn place(&self, links: u32, strain: f64, mover: &mut Mover<'_>) -> Option<(f64, Vec<Wheel>)> {
         let search = search(mover.travel, self.pitch, mover.reach);
         let found = close_nearest(self.pitch, strain, links, self.phase, mover.wheels, search);

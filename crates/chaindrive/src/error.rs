@@ -1,6 +1,6 @@
 //! Why a simulation could not start or go on.
 
-use chaindrive_integrate::{IntegrationError, Quantity};
+use chaindrive_integrate::{IntegrationError, StateQuantity};
 use chaindrive_mechanics::{AssemblyError, Flow, System};
 
 use crate::Stepping;
@@ -78,7 +78,7 @@ pub enum SimulationError {
         reason: String,
     },
 
-    /// A time that lies behind.
+    /// A time that has passed.
     #[error(
         "t = {time} s is past: the simulation was read at {read} s; take a snapshot to go back to"
     )]
@@ -146,7 +146,9 @@ impl SimulationError {
             IntegrationError::NotFinite { t, dof, quantity } => Self::NotFinite {
                 t,
                 place: match quantity {
-                    Quantity::Quadrature => format!("the energy flow `{}`", Flow::ALL[dof].name()),
+                    StateQuantity::Quadrature => {
+                        format!("the energy flow `{}`", Flow::ALL[dof].name())
+                    }
                     _ => system.place(dof),
                 },
                 quantity: quantity.to_string(),

@@ -7,16 +7,16 @@ use std::convert::Infallible;
 use chaindrive_mechanics::Drive;
 use serde_json::{Map, Value};
 
-use crate::patience::{LOOK, assemble};
+use crate::interruptible::{LOOK, assemble};
 use crate::precision::{Choice, Judgement, ShortRuns};
 use crate::record::{
-    Checkpoint, End, Ending, NotAgain, Provenance, Sink, Stopped, WriteError, attributes,
+    Checkpoint, End, Ending, Provenance, RestoreError, Sink, StoppedRun, WriteError, attributes,
 };
 use crate::run_in::Onlooker;
 use crate::scene::SceneError;
 use crate::summary::Summary;
 use crate::{
-    Channel, RanIn, Request, Run, RunIn, Simulation, SimulationError, SnapshotError, Verdict,
+    Channel, Request, Run, RunIn, RunInReport, Simulation, SimulationError, SnapshotError, Verdict,
 };
 
 use start::{RunState, Setup, not_started, short_runs};
@@ -54,17 +54,17 @@ pub struct Report {
     pub drive: Drive,
     /// The run as it was carried out, with the method and step chosen.
     pub run: Run,
-    /// How method and step were chosen, if they were.
+    /// Choice of method and step, if one was made.
     pub choice: Option<Choice>,
-    /// How it was run in, if it was.
-    pub ran_in: Option<RanIn>,
+    /// The run-in, if there was one.
+    pub ran_in: Option<RunInReport>,
     /// The account of its samples.
     pub summary: Summary,
-    /// How exact it is; nothing is said of a run that failed.
+    /// Estimate of the numerical error; none for a run that failed.
     pub judgement: Option<Judgement>,
-    /// How far it can be trusted.
+    /// Verdict on how far the result can be trusted.
     pub verdict: Verdict,
-    /// How it ended.
+    /// Reason for the end of the run.
     pub stop: Stop,
     /// Attributes of the result: the same in memory and in a store.
     pub attributes: Map<String, Value>,
@@ -104,9 +104,9 @@ impl Stop {
 /// # Example
 ///
 /// ```
-/// use chaindrive::{Given, Memory, Request, Scene, Settings, execute};
+/// use chaindrive::{SettingValue, Memory, Request, Scene, Settings, execute};
 ///
-/// let settings = Settings::default().with("until", Given::Number(2e-3));
+/// let settings = Settings::default().with("until", SettingValue::Number(2e-3));
 /// let request = Request::new(&Scene::preset("spinning_ring")?, &settings)?;
 /// let mut memory = Memory::default();
 /// let report = execute(&request, &mut memory, &|| false)?;
@@ -171,7 +171,7 @@ pub(crate) fn execute_by<S: Sink>(
     complete(request, state, sink, onlooker)
 }
 
-impl Stopped {
+impl StoppedRun {
     /// Takes the run to its end.
     ///
     /// # Errors
@@ -185,7 +185,7 @@ impl Stopped {
 /// Carries a run on from a checkpoint: the report is that of the run that was never stopped, but for the wall times.
 ///
 /// The sink must hold the samples and contacts up to the checkpoint, and nothing else: see
-/// [`Stopped`](crate::record::Stopped), which opens the store of a run that was stopped or killed.
+/// [`StoppedRun`](crate::record::StoppedRun), which opens the store of a run that was stopped or killed.
 fn resume<S: Sink>(
     checkpoint: &Checkpoint,
     sink: &mut S,
@@ -211,8 +211,8 @@ fn resume<S: Sink>(
     };
     let start = checkpoint.start(&drive, &|| onlooker.stop());
     let start = start.map_err(|error| match error {
-        NotAgain::Start(error) => not_started(error),
-        NotAgain::Snapshot(error) => RunError::Snapshot(error),
+        RestoreError::Start(error) => not_started(error),
+        RestoreError::Snapshot(error) => RunError::Snapshot(error),
     })?;
     let short_runs = if checkpoint.has_moved() {
         ShortRuns::default()
@@ -400,7 +400,7 @@ impl Marks {
         marks
     }
 
-    /// Whether the last sample lies behind a time that no sample before it did.
+    /// Whether the last sample is the first after a multiple of `every`.
     fn pass(&mut self, simulation: &Simulation) -> bool {
         let Some(every) = self.every else {
             return false;

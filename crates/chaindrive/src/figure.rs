@@ -41,7 +41,7 @@ pub fn with_digits(value: f64, digits: i32) -> String {
     text
 }
 
-/// Digits behind the point that leave a value so many.
+/// Digits after the point of a value of this magnitude.
 fn decimals(value: f64, digits: i32) -> usize {
     let before = value.abs().log10().floor();
     #[expect(
@@ -60,7 +60,7 @@ pub struct Scale {
     pub unit: &'static str,
     /// SI units in one of it.
     pub per: f64,
-    /// Digits behind the point, alike in a whole column.
+    /// Digits after the point, alike in a whole column.
     decimals: usize,
 }
 
@@ -175,7 +175,7 @@ impl Measure {
 }
 
 impl Scale {
-    /// A value in SI, in this unit, with as many digits behind the point as all of the column.
+    /// A value in SI, in this unit, with as many digits after the point as all of the column.
     pub fn cell(&self, value: f64) -> String {
         let value = value / self.per;
         if !value.is_finite() {

@@ -7,7 +7,7 @@
 //! A [`Page`] is sections of sentences and tables, as text, or as JSON for whoever sets them otherwise. Steps, contacts and errors are
 //! [numerics], on a page of their own.
 
-mod by_the_step;
+mod error_by_step;
 mod losses;
 mod numerics;
 mod sections;
@@ -21,7 +21,7 @@ pub use numerics::numerics;
 use crate::precision::Judgement;
 use crate::sheet::aligned;
 use crate::summary::Summary;
-use crate::{RanIn, Simulation, Verdict};
+use crate::{RunInReport, Simulation, Verdict};
 
 /// The page of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -39,7 +39,7 @@ pub struct Section {
     pub columns: Vec<String>,
     /// Rows of its table.
     pub rows: Vec<Vec<String>>,
-    /// Sentences, behind the table.
+    /// Sentences, after the table.
     pub sentences: Vec<String>,
 }
 
@@ -65,11 +65,11 @@ impl Page {
         verdict: &Verdict,
         summary: &Summary,
         simulation: &Simulation,
-        ran_in: Option<&RanIn>,
+        ran_in: Option<&RunInReport>,
         judgement: Option<&Judgement>,
         assumed: &[String],
     ) -> Self {
-        let run = sections::Told {
+        let run = sections::PageContent {
             verdict,
             summary,
             simulation,

@@ -1,4 +1,4 @@
-//! How exact a run is: its chaos horizon, its numerical error, and the method that an accuracy takes.
+//! Accuracy of a run: its chaos horizon, its numerical error, and the method that reaches a given accuracy.
 //!
 //! | question | answer |
 //! |---|---|

@@ -8,7 +8,7 @@ mod load;
 mod lubrication;
 mod strands;
 
-use chaindrive_mechanics::{Capacity, Strength, Unrated};
+use chaindrive_mechanics::{Capacity, MissingRating, Strength};
 
 pub use load::{Load, SprocketDuty};
 pub use lubrication::Lubrication;
@@ -30,7 +30,7 @@ pub struct Rating {
     /// Power of all strands over that of a single one \[–\], see [`strand_factor`].
     pub strand_factor: f64,
     /// Limits of its power, or why there are none.
-    pub limits: Result<Vec<PowerLimit>, Unrated>,
+    pub limits: Result<Vec<PowerLimit>, MissingRating>,
     /// Power that the chain of ASME B29.1 with its pitch and strands is rated for \[W\], where there is no rating of its own.
     pub twin: Option<f64>,
     /// How it is to be oiled, where that is known for its pitch.
@@ -118,7 +118,7 @@ pub fn power_limits(
     strength: &Strength,
     teeth: u32,
     speed: f64,
-) -> Result<Vec<PowerLimit>, Unrated> {
+) -> Result<Vec<PowerLimit>, MissingRating> {
     let limit = |by, power| PowerLimit { by, power };
     let factor = strand_factor(strength.strands);
     match strength.capacity {
@@ -142,7 +142,7 @@ pub fn power_limits(
 ///
 /// # Errors
 /// Says why there is no rating.
-pub fn rated_power(strength: &Strength, teeth: u32, speed: f64) -> Result<f64, Unrated> {
+pub fn rated_power(strength: &Strength, teeth: u32, speed: f64) -> Result<f64, MissingRating> {
     let limits = power_limits(strength, teeth, speed)?;
     Ok(least(&limits).map_or(0.0, |(_, power)| power))
 }
@@ -167,7 +167,7 @@ impl Rating {
             .map_or((0, 0.0), |it| (it.teeth, it.speed));
         let strand_factor = strand_factor(strength.strands);
         let twin = match strength.capacity {
-            Capacity::Unknown(Unrated::SourceMissing { twin }) => twin,
+            Capacity::Unknown(MissingRating::SourceMissing { twin }) => twin,
             _ => None,
         };
         // v = z p n

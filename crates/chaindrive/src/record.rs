@@ -2,11 +2,11 @@
 
 mod attributes;
 mod checkpoint;
-mod in_store;
 mod memory;
 mod recorded;
 mod sink;
 mod zarr;
+mod zarr_sink;
 
 use chaindrive_mechanics::{Energy, Observation, System};
 
@@ -15,20 +15,20 @@ use crate::{Channel, Run, SimulationError};
 
 pub use crate::event::{EventColumn, EventTable};
 pub use crate::summary::{
-    Bearing, Bodies, ContactStatistics, Course, ForceStatistics, ImpactStatistics, Known, Ledger,
-    SpanStatistics, SprocketCourse, Steadiness, Summary,
+    BearingForce, Bodies, ConfidenceInterval, ContactStatistics, ForceStatistics, ImpactStatistics,
+    Ledger, SampleStatistics, SpanStatistics, SprocketStatistics, Steadiness, Summary,
 };
 pub use crate::zarr::{
     Claim, Ending, Existing, Object, Objects, WriteError, is_being_written, take_over,
 };
 pub use attributes::{Provenance, attributes};
 pub use checkpoint::Checkpoint;
-pub(crate) use checkpoint::NotAgain;
-pub use in_store::InStore;
+pub(crate) use checkpoint::RestoreError;
 pub use memory::Memory;
-pub use recorded::{LoggedContact, Recorded, RecordedChannel};
+pub use recorded::{LoggedContact, RecordedChannel, RecordedRun};
 pub use sink::{End, Sink};
-pub use zarr::{ReadError, ResumeError, Stopped, ZarrWriter, inspect};
+pub use zarr::{ReadError, ResumeError, StoppedRun, ZarrWriter, inspect};
+pub use zarr_sink::ZarrSink;
 
 /// One channel of a recording.
 #[derive(Clone, Debug)]

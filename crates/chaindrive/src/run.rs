@@ -14,7 +14,7 @@ use crate::{SimulationError, Stepping};
 
 pub use error::RequestError;
 pub use request::Request;
-pub use settings::{Given, Settings};
+pub use settings::{SettingValue, Settings};
 
 /// Settings of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -9,14 +9,14 @@ use chaindrive_mechanics::{Assembled, Drive, EventKinds};
 use serde::{Deserialize, Serialize};
 
 use crate::figure::Measure;
-use crate::patience::{LOOK, assemble};
+use crate::interruptible::{LOOK, assemble};
 use crate::{Run, RunIn, Simulation, SimulationError};
 
 /// Circuits of the chain \[–\] after which a run-in that ends by itself gives up. *Assumed*: what swings longer than that is no
 /// start that dies out.
 pub const MOST_CIRCUITS: u32 = 32;
 
-/// Looks on while a run is carried out, and may have it stopped.
+/// Observes a run while it is simulated, and may stop it.
 pub trait Onlooker {
     /// Whether the user wants it to stop; asked after every sample, and every 50 ms where there is none.
     fn stop(&self) -> bool;
@@ -39,12 +39,12 @@ impl<F: Fn() -> bool> Onlooker for F {
     }
 }
 
-/// How a run was run in.
+/// Record of a run-in: its length, why it ended, or why there was none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct RanIn {
+pub struct RunInReport {
     /// Simulated before t = 0 \[s\].
     pub time: f64,
-    /// Whether the tensions were found steady by then; nobody looked where the time was given.
+    /// Whether the tensions were found steady by then; none where the time was given, for nobody checked.
     pub is_steady: Option<bool>,
     /// Run-in by default, not by request.
     pub by_default: bool,
@@ -52,7 +52,7 @@ pub struct RanIn {
     pub left_out: Option<String>,
 }
 
-impl RanIn {
+impl RunInReport {
     /// A run-in longer than nothing: the record begins after the assembly.
     pub(crate) fn has_moved(&self) -> bool {
         self.time > 0.0
@@ -68,7 +68,7 @@ impl RanIn {
     }
 }
 
-impl fmt::Display for RanIn {
+impl fmt::Display for RunInReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(why) = &self.left_out {
             return write!(
@@ -103,7 +103,7 @@ impl Simulation {
     }
 }
 
-/// Runs an assembled drive in, if the run says so: as it stands at t = 0 of the record then.
+/// Runs an assembled drive in if the run asks for it, and returns it as it stands at t = 0 of the record.
 ///
 /// The drive is assembled again, so long before, and moved with the method, step and tolerance of the run. What this leaves is
 /// a start like any other: the error of the run counts from there. A run-in that ends by itself begins where the clock of the drive does, and leaves it at a
@@ -116,7 +116,7 @@ pub fn run_in(
     start: Assembled,
     run: &Run,
     onlooker: &dyn Onlooker,
-) -> Result<(Assembled, Option<RanIn>), SimulationError> {
+) -> Result<(Assembled, Option<RunInReport>), SimulationError> {
     if run.run_in == RunIn::Usual {
         return Ok((start, None));
     }
@@ -129,14 +129,14 @@ pub(crate) struct RecordStart {
     /// The drive there.
     pub(crate) start: Assembled,
     /// The run-in before, if there was one or none by default.
-    pub(crate) ran_in: Option<RanIn>,
+    pub(crate) ran_in: Option<RunInReport>,
     /// The simulation of the run-in, where it went on beyond the start of the record: it has samples from there on.
     pub(crate) simulation: Option<Simulation>,
 }
 
 impl RecordStart {
     /// The start of a record that nothing is simulated of so far.
-    fn at(start: Assembled, ran_in: Option<RanIn>) -> Self {
+    fn at(start: Assembled, ran_in: Option<RunInReport>) -> Self {
         Self {
             start,
             ran_in,
@@ -146,7 +146,7 @@ impl RecordStart {
 
     /// A run-in longer than nothing.
     pub(crate) fn has_moved(&self) -> bool {
-        self.ran_in.as_ref().is_some_and(RanIn::has_moved)
+        self.ran_in.as_ref().is_some_and(RunInReport::has_moved)
     }
 }
 
@@ -164,10 +164,10 @@ pub(crate) fn record_start(
         RunIn::Turns { turns, sprocket } => turns_last(&start, *turns, sprocket.as_deref())?,
         RunIn::Usual => {
             if let Some(why) = start.why_it_does_not_repeat() {
-                let ran_in = RanIn {
+                let ran_in = RunInReport {
                     by_default: true,
                     left_out: Some(why.to_owned()),
-                    ..RanIn::lasted(0.0, None)
+                    ..RunInReport::lasted(0.0, None)
                 };
                 return Ok(RecordStart::at(start, Some(ran_in)));
             }
@@ -183,7 +183,7 @@ pub(crate) fn record_start(
         }
         RunIn::Auto => return steady::steady_start(&start, run, onlooker),
     };
-    let ran_in = Some(RanIn::lasted(time, None));
+    let ran_in = Some(RunInReport::lasted(time, None));
     let mut moving = before(&start.drive, time, run, stop)?;
     onlooker.see_run_in(0.0);
     while !moving.advance(LOOK)? {

@@ -18,7 +18,7 @@ const BUILD: &str = "build ";
 const INSTRUCTION_SET: &str = "instruction set ";
 
 /// Values that can be written down.
-pub trait Sealed: Serialize + DeserializeOwned {
+pub trait SealedValue: Serialize + DeserializeOwned {
     /// Its name in messages and in the first line.
     const KIND: &'static str;
 }
@@ -45,7 +45,7 @@ pub enum SealError {
 ///
 /// # Panics
 /// Never: the values are plain data, and the memory takes them.
-pub fn sealed<T: Sealed>(value: &T) -> Vec<u8> {
+pub fn sealed<T: SealedValue>(value: &T) -> Vec<u8> {
     let content = postcard::to_stdvec(value).expect("plain data has a length known beforehand");
     let mut bytes = heading::<T>(&Origin::here(), &content).into_bytes();
     bytes.extend(content);
@@ -56,7 +56,7 @@ pub fn sealed<T: Sealed>(value: &T) -> Vec<u8> {
 ///
 /// # Errors
 /// [`SealError`]: something else, damaged, or of another build or instruction set.
-pub fn opened<T: Sealed>(bytes: &[u8]) -> Result<T, SealError> {
+pub fn opened<T: SealedValue>(bytes: &[u8]) -> Result<T, SealError> {
     let kind = T::KIND;
     let foreign = || SealError::Foreign { kind };
     let end = bytes.iter().position(|byte| *byte == b'\n');
@@ -90,7 +90,7 @@ pub fn opened<T: Sealed>(bytes: &[u8]) -> Result<T, SealError> {
     postcard::from_bytes(content).map_err(|_| SealError::Damaged { kind })
 }
 
-fn heading<T: Sealed>(origin: &Origin, content: &[u8]) -> String {
+fn heading<T: SealedValue>(origin: &Origin, content: &[u8]) -> String {
     let (kind, checksum) = (T::KIND, crc32fast::hash(content));
     let Origin {
         build,
@@ -110,14 +110,14 @@ mod tests {
     #[derive(Debug, Serialize, Deserialize)]
     struct Numbers(Vec<f64>);
 
-    impl Sealed for Numbers {
+    impl SealedValue for Numbers {
         const KIND: &'static str = "list";
     }
 
     #[derive(Debug, Serialize, Deserialize)]
     struct Others(Vec<f64>);
 
-    impl Sealed for Others {
+    impl SealedValue for Others {
         const KIND: &'static str = "table";
     }
 

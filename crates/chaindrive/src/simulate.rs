@@ -1,10 +1,10 @@
 //! A drive in motion: step, read, set, sample.
 
-mod ended;
+mod ended_contacts;
 mod live;
-mod many;
 mod sample;
 mod snapshot;
+mod step_many;
 mod view;
 
 use std::collections::VecDeque;
@@ -45,7 +45,7 @@ pub struct Simulation {
     /// Impacts of rollers that came to a sprocket, likewise.
     struck: [Vec<Impact>; 2],
     /// The state before the last step, when that went beyond the time read: a change at that time begins from here.
-    before: Option<Box<Before>>,
+    before: Option<Box<PreviousState>>,
     /// Samples that were taken before anybody asked for them.
     ahead: VecDeque<Sample>,
     /// Time of the last sample or reading \[s\].
@@ -81,10 +81,10 @@ impl Moving {
 
 use live::Changes;
 pub use live::Control;
-pub use many::step_many;
 pub(crate) use sample::Sample;
-use snapshot::Before;
+use snapshot::PreviousState;
 pub use snapshot::{Snapshot, SnapshotError};
+pub use step_many::step_many;
 pub use view::View;
 
 /// Fastest that a chain may run at the start \[m/s\]: the speed of sound in steel.
@@ -247,7 +247,7 @@ impl Simulation {
         events.extend(self.moving.system.lasting_events());
         let zero = self.zero();
         for event in &mut events {
-            ended::count_from(zero, event);
+            ended_contacts::count_from(zero, event);
         }
         events
     }
@@ -283,7 +283,7 @@ impl Simulation {
         self.assembled.zero
     }
 
-    /// Where another simulation can begin: the drive as it stands at the end of the last step, contacts that last included.
+    /// The drive at the end of the last step, open contacts included, as the start of another simulation.
     pub(crate) fn as_start(&self) -> Assembled {
         let Moving { system, state, .. } = &self.moving;
         self.assembled.come_to(system.clone(), state)
@@ -294,7 +294,7 @@ impl Simulation {
         &self.moving.system
     }
 
-    /// How the drive was assembled.
+    /// The assembled drive that the simulation began with.
     pub fn assembled(&self) -> &Assembled {
         &self.assembled
     }

@@ -2,10 +2,10 @@
 
 mod blocks;
 mod bodies;
-mod carried;
-mod counted;
+mod chain_duties;
 mod impacts;
 mod steadiness;
+mod value_counts;
 
 use chaindrive_mechanics::{ContactEvent, Energy, Flow, Impact, Observation, Place};
 use hdrhistogram::Histogram;
@@ -15,11 +15,11 @@ use crate::Simulation;
 use crate::event::{EventTable, kind};
 use crate::rating::{Load, Rating};
 use blocks::Blocks;
-pub use bodies::{Bearing, Bodies, Course, SprocketCourse};
-use carried::Carried;
+pub use bodies::{BearingForce, Bodies, SampleStatistics, SprocketStatistics};
+use chain_duties::ChainDuties;
 pub use impacts::ImpactStatistics;
+pub use steadiness::{ConfidenceInterval, Steadiness};
 pub(crate) use steadiness::{DRIFT, drift};
-pub use steadiness::{Known, Steadiness};
 
 /// Collects statistics sample by sample, in bounded memory.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -30,7 +30,7 @@ pub struct Summary {
     period: f64,
     /// Time of the first sample \[s\].
     began: Option<f64>,
-    #[serde(with = "counted")]
+    #[serde(with = "value_counts")]
     forces: Histogram<u64>,
     largest_force: f64,
     impacts: Vec<ImpactStatistics>,
@@ -44,9 +44,9 @@ pub struct Summary {
     pub not_finite: u64,
     /// Samples seen.
     pub samples: u64,
-    /// Whether somebody keeps the samples, so that more than the summary is made of them.
+    /// Whether the samples are kept; otherwise only the summary is made of them.
     pub kept: bool,
-    carried: Carried,
+    carried: ChainDuties,
     bodies: Bodies,
     /// Time of the last sample \[s\].
     ended: f64,
@@ -185,13 +185,13 @@ impl Ledger {
         }
     }
 
-    /// Whether nobody takes out what is supplied: all of it is lost, or stays in motion, height and springs.
+    /// Whether nothing takes energy out: all that is supplied is lost, or stays in motion, height and springs.
     fn idles(&self) -> bool {
         self.delivered <= TAKEN * self.supplied
     }
 }
 
-/// How much energy a run has moved about.
+/// Energy that a run has moved about.
 ///
 /// Net work is no measure for that: a driver that reverses takes back what it gave, and a chain that
 /// swings or spins freely is given nothing at all.
@@ -317,7 +317,7 @@ impl Summary {
             not_finite: 0,
             samples: 0,
             kept: false,
-            carried: Carried::new(simulation),
+            carried: ChainDuties::new(simulation),
             bodies: Bodies::new(&simulation.assembled().drive),
             ended: f64::NAN,
         }
@@ -341,7 +341,7 @@ impl Summary {
         }
         for &force in sample.contact_force.iter().filter(|force| **force > 0.0) {
             self.largest_force = self.largest_force.max(force);
-            counted::note(&mut self.forces, force * COUNTS_PER_NEWTON);
+            value_counts::note(&mut self.forces, force * COUNTS_PER_NEWTON);
         }
         let before = self.start.map_or(sample.energy, |_| self.last);
         let start = *self.start.get_or_insert(sample.energy);
@@ -377,7 +377,7 @@ impl Summary {
     pub fn known_from(&self) -> Option<f64> {
         let short = |it: &Steadiness| it.mean.half_width.is_nan();
         let is_short = self.steadiness().iter().flatten().any(short);
-        // Three periods, and a sample behind them.
+        // Three periods, and a sample after them.
         let until = 3.05 * self.period;
         (is_short && until.is_finite()).then_some(until)
     }
@@ -494,7 +494,7 @@ impl Summary {
         self.ended - self.began.unwrap_or(f64::NAN)
     }
 
-    /// What the chains touch.
+    /// Loads of the bodies that the chains touch.
     pub fn bodies(&self) -> &Bodies {
         &self.bodies
     }
@@ -504,7 +504,7 @@ impl Summary {
         self.carried.loads(&self.spans, &self.bodies.sprockets)
     }
 
-    /// What each chain is made for, beside what the run has asked of it.
+    /// Ratings of the chains, beside the loads of the run.
     pub fn ratings(&self) -> Vec<Rating> {
         self.carried().iter().map(Rating::of).collect()
     }

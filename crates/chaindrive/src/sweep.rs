@@ -5,6 +5,7 @@
 
 mod account;
 mod answer;
+mod arrays;
 mod attributes;
 mod blocks;
 mod choices;
@@ -17,7 +18,6 @@ mod layout;
 mod report;
 mod sample;
 mod sink;
-mod stack;
 mod store;
 mod tally;
 mod texts;
@@ -30,17 +30,17 @@ use std::sync::{Arc, OnceLock};
 use serde::{Deserialize, Serialize};
 
 pub use crate::statistic::Statistic;
-pub use account::{Account, Entry, Quantity};
-pub use answer::{Answer, Finished};
-use blocks::Blocks;
-use choices::{Choices, Shared};
+pub use account::{Account, Entry, ResultQuantity};
+pub use answer::{Answer, VariantCounts};
+pub use arrays::{StackedQuantity, StackedText, SweepArrays};
+use blocks::SweepBlocks;
+use choices::{Choices, SharedChoice};
 pub use coordinator::{Coordinator, SweepMemory, Watch};
 pub use design::Recipe;
 pub use dimension::{Arrangement, Coordinate, Dimension, Setting};
 pub use report::Report;
 pub use sample::Sample;
-pub use stack::{Stacked, StackedQuantity, StackedText};
-pub use store::{Place, SweepStore};
+pub use store::{StoreLocation, SweepStore};
 pub use tally::Tally;
 pub(crate) use texts::{OPEN, TEXTS};
 pub use worker::Worker;
@@ -148,7 +148,7 @@ pub enum SweepError {
     Write(#[from] WriteError),
 }
 
-/// How a variant ended.
+/// Outcome of a variant.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Outcome {
     /// Not yet, or not at all because the sweep was stopped.
@@ -171,7 +171,7 @@ pub struct Progress<'a> {
     pub variants: usize,
 }
 
-/// Whether to go on.
+/// Answer of an observer: go on, or stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Go {
     /// With the next variants.
@@ -211,7 +211,7 @@ pub struct Sweep {
     /// Samples of the longest run among those that were looked at; 0 when no channel is kept.
     most_samples: usize,
     /// Filled when somebody asks.
-    blocks: Arc<OnceLock<Blocks>>,
+    blocks: Arc<OnceLock<SweepBlocks>>,
     choices: Arc<Choices>,
 }
 
@@ -289,7 +289,7 @@ impl Sweep {
         self.len
     }
 
-    /// Whether there is no variant: never.
+    /// Whether there is no variant; always false.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -325,8 +325,8 @@ impl Sweep {
         }
     }
 
-    fn blocks(&self) -> &Blocks {
-        self.blocks.get_or_init(|| Blocks::of(self))
+    fn blocks(&self) -> &SweepBlocks {
+        self.blocks.get_or_init(|| SweepBlocks::of(self))
     }
 
     /// Runs one variant on the calling thread, until it ends or `stop` is set.
@@ -338,7 +338,7 @@ impl Sweep {
     }
 
     /// The same by a choice.
-    fn carry_out_by(&self, shared: &Shared, index: usize, stop: &AtomicBool) -> Outcome {
+    fn carry_out_by(&self, shared: &SharedChoice, index: usize, stop: &AtomicBool) -> Outcome {
         account::outcome(|| {
             let scene = self.variant(index).map_err(|error| error.to_string())?;
             let request =

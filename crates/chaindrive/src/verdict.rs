@@ -20,7 +20,7 @@ use crate::precision::{Choice, Estimate, Judgement, LEAST_LOSSES, Promise};
 use crate::sheet::{NAMES, aligned};
 use crate::summary::{Ledger, Steadiness, Summary};
 use crate::zarr::Story;
-use crate::{Channel, RanIn, Simulation};
+use crate::{Channel, RunInReport, Simulation};
 
 pub use reason::{Reason, Rule};
 
@@ -53,7 +53,7 @@ pub struct Verdict {
     pub trust: Trust,
     /// Reasons against the result, the worst first.
     pub reasons: Vec<Reason>,
-    /// What its reader is to know, and what speaks against nothing.
+    /// Remarks for the reader that do not speak against the result.
     pub notes: Vec<Reason>,
 }
 
@@ -64,7 +64,7 @@ pub struct WrittenVerdict {
     pub verdict: String,
     /// The attribute `reasons`: names, with blanks between them.
     pub reasons: String,
-    /// The attribute `verdict_note`: the reasons in words, the notes behind them.
+    /// The attribute `verdict_note`: the reasons in words, the notes after them.
     pub note: String,
 }
 
@@ -119,7 +119,7 @@ impl Verdict {
     pub fn of(
         summary: &Summary,
         simulation: &Simulation,
-        ran_in: Option<&RanIn>,
+        ran_in: Option<&RunInReport>,
         choice: Option<&Choice>,
         judgement: Option<&Judgement>,
     ) -> Self {
@@ -181,7 +181,7 @@ impl Verdict {
         story.0
     }
 
-    /// The reasons in words, and the notes behind them, with semicolons between them.
+    /// The reasons in words, and the notes after them, with semicolons between them.
     pub fn note(&self) -> String {
         let all = self.reasons.iter().chain(&self.notes);
         all.map(Reason::to_string).collect::<Vec<_>>().join("; ")
@@ -351,7 +351,7 @@ fn steadiness(spans: &[(&str, Steadiness, f64)], until: Option<f64>, time: f64) 
 }
 
 /// Reason against a run-in that was to end by itself and did not.
-fn started(ran_in: &RanIn) -> Option<Reason> {
+fn started(ran_in: &RunInReport) -> Option<Reason> {
     let gave_up = ran_in.is_steady == Some(false);
     gave_up.then_some(Reason::NotRunIn { time: ran_in.time })
 }

@@ -138,10 +138,10 @@ fn failed_line() -> String {
     incomplete(&Ending::Failed("failed".to_owned())).expect("a failure is no end")
 }
 
-/// A table in the making. Behind its last row stands that it is still running.
+/// A table in the making. After its last row a line says that it is still running.
 #[derive(Debug)]
 struct Table {
-    claimed: Claimed,
+    claimed: TableClaim,
     file: File,
     /// Length of the heading and the rows in the file.
     length: u64,
@@ -152,7 +152,7 @@ struct Table {
 }
 
 impl Table {
-    fn begin(claimed: Claimed, heading: &[String]) -> Result<Self, Failure> {
+    fn begin(claimed: TableClaim, heading: &[String]) -> Result<Self, Failure> {
         let made = File::create(claimed.claim.workshop());
         let mut table = Self {
             file: made.map_err(|source| failed(&claimed.path, source))?,
@@ -300,14 +300,14 @@ pub(crate) fn failed(path: &Path, source: io::Error) -> Failure {
     }
 }
 
-/// A place for a table, with the right to write there.
+/// Claim of the path of a table: the right to write there.
 #[derive(Debug)]
-pub(crate) struct Claimed {
+pub(crate) struct TableClaim {
     pub(crate) claim: Claim,
     pub(crate) path: PathBuf,
 }
 
-impl Claimed {
+impl TableClaim {
     /// Removes an earlier table.
     fn remove(self) -> Result<(), Failure> {
         match fs::remove_file(self.claim.place()) {
@@ -318,13 +318,13 @@ impl Claimed {
 }
 
 /// Claims a place for a table, unless something else is there.
-pub(crate) fn claim(path: &Path, existing: Existing) -> Result<Claimed, Failure> {
+pub(crate) fn claim(path: &Path, existing: Existing) -> Result<TableClaim, Failure> {
     let taken = |found, hint| Failure::Taken {
         path: path.display().to_string(),
         found,
         hint,
     };
-    let claimed = Claimed {
+    let claimed = TableClaim {
         claim: Claim::take(path)?,
         path: path.to_owned(),
     };

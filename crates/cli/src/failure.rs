@@ -1,4 +1,4 @@
-//! How a command ends when it does not end well.
+//! Failures of a command, with their exit codes.
 
 use std::convert::Infallible;
 use std::io::ErrorKind;

@@ -19,7 +19,7 @@ mod failure;
 mod progress;
 mod request;
 mod stream;
-mod suggested;
+mod suggested_values;
 mod terminal;
 
 use std::ffi::OsString;
@@ -92,7 +92,7 @@ enum Verb {
 
 /// A movie, report or diagram: the Python package draws it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drawn {
+pub struct DrawingRequest {
     /// Result, or, for a report, also a scene file or the name of an embedded scene; for a diagram, the table that [`run`] writes.
     pub source: PathBuf,
     /// The file to make.
@@ -106,7 +106,7 @@ pub struct Drawn {
 }
 
 /// The movie, report or diagram that a command line asks of the Python package; none if it asks for anything else, or is wrong: [`run`] tells then.
-pub fn drawn<A>(arguments: impl IntoIterator<Item = A>) -> Option<Drawn>
+pub fn drawn<A>(arguments: impl IntoIterator<Item = A>) -> Option<DrawingRequest>
 where
     A: Into<OsString> + Clone,
 {

@@ -1,4 +1,4 @@
-//! How far a run or a sweep is, on a terminal; in a pipe, nothing.
+//! Progress of a run or a sweep on a terminal; nothing in a pipe.
 
 use std::cell::RefCell;
 use std::io::IsTerminal;
@@ -24,7 +24,7 @@ pub(crate) struct Progress {
     from: Option<[f64; 2]>,
     /// Share done, and the wall time when it was reached \[s\].
     reached: [f64; 2],
-    /// When samples ceased to come: before the first one, or behind the last.
+    /// When samples ceased to come: before the first one, or after the last.
     resting: Option<Instant>,
 }
 
@@ -66,7 +66,7 @@ impl Progress {
         self.tell(0.0, |elapsed, _| format!("{what}, {}", clock(elapsed)));
     }
 
-    /// Shows for how long a run gives no samples: it assembles and chooses a method before them, and estimates its error behind.
+    /// Shows for how long a run gives no samples: it assembles and chooses a method before them, and estimates its error after.
     pub(crate) fn rest(&mut self) {
         if self.resting.is_none() && self.shown.elapsed() < PAUSE {
             return;

@@ -4,12 +4,13 @@ use std::path::Path;
 
 use chaindrive::scene::{Datum, SceneError, presets};
 use chaindrive::{
-    Channel, Given, Request, RequestError, Scene, Settings, SimulationError, Stepping, patiently,
+    Channel, Request, RequestError, Scene, SettingValue, Settings, SimulationError, Stepping,
+    patiently,
 };
 use clap::Args;
 
 use crate::failure::Failure;
-use crate::suggested::Suggested;
+use crate::suggested_values::SuggestedValues;
 
 /// A scene and what is changed in it.
 #[derive(Debug, Args)]
@@ -70,7 +71,7 @@ pub(crate) struct RunArguments {
     record: Vec<String>,
 
     /// Contacts to log, separated by commas: teeth, guides, joints; they go into the result and the summary
-    #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = Suggested(vec!["teeth", "guides", "joints"]), hide_possible_values = true)]
+    #[arg(long, value_name = "KINDS", value_delimiter = ',', value_parser = SuggestedValues(vec!["teeth", "guides", "joints"]), hide_possible_values = true)]
     events: Vec<String>,
 }
 
@@ -91,9 +92,9 @@ fn counted<T: TryFrom<u64>>(text: &str, least: u64) -> Result<T, String> {
 }
 
 /// Channels as shells complete them.
-pub(crate) fn channels() -> Suggested {
+pub(crate) fn channels() -> SuggestedValues {
     let names = Channel::ALL.iter().map(|channel| channel.name());
-    Suggested(names.chain(["all"]).collect())
+    SuggestedValues(names.chain(["all"]).collect())
 }
 
 /// Reads a scene file, stdin or an embedded scene; what comes through a pipe may be a long time in coming.
@@ -228,14 +229,14 @@ impl RunArguments {
         let mut settings = Settings::default();
         for (path, _, value) in self.settings() {
             if let Some(value) = value {
-                settings = settings.with(key(path), Given::written(value));
+                settings = settings.with(key(path), SettingValue::written(value));
             }
         }
         for (path, names) in [("run.record", &self.record), ("run.events", &self.events)] {
             let names = names.iter().map(|name| name.trim().to_owned());
             let names: Vec<_> = names.filter(|name| !name.is_empty()).collect();
             if !names.is_empty() {
-                settings = settings.with(key(path), Given::Names(names));
+                settings = settings.with(key(path), SettingValue::Names(names));
             }
         }
         Request::new(scene, &settings).map_err(|error| self.refused(error, scene.name()))

@@ -7,7 +7,7 @@ use crate::elastic::{Curve, Stack};
 use crate::error::{require, require_positive};
 use crate::{Dissipation, Elastic, ParameterError};
 
-/// How two surfaces stand to each other at one instant.
+/// Relative position and motion of two surfaces at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Approach {
     /// Penetration δ \[m\]: overlap of the surfaces, zero or negative across a gap.
@@ -65,8 +65,8 @@ pub struct Law {
 
 impl Law {
     /// The law with all its constants worked out, for loops.
-    pub fn prepared(&self) -> Prepared {
-        Prepared {
+    pub fn prepared(&self) -> PreparedLaw {
+        PreparedLaw {
             stack: self.stack(),
             action: self.dissipation.action(),
             onset_floor: self.onset_floor,
@@ -178,13 +178,13 @@ impl Law {
 /// A linear spring costs no power and no logarithm, Hertz's law a square root, a fitted power one power, a
 /// logarithmic law two logarithms; the factor of the dissipation is a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Prepared {
+pub struct PreparedLaw {
     stack: Stack,
     action: Action,
     onset_floor: f64,
 }
 
-impl Prepared {
+impl PreparedLaw {
     /// Depth δ \[m\] from which on the elastic law is no more than its own tangent, what lies behind the surfaces included; none
     /// for laws that go on.
     pub fn reach(&self) -> Option<f64> {

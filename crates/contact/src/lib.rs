@@ -10,7 +10,7 @@
 //!
 //! A [`Law`] joins an elastic law and a dissipation; a Kelvin–Voigt element, for example, is a linear
 //! [`Power`](elastic::Power) with a [`Viscous`](dissipation::Viscous) damper. Kernels keep the law
-//! [`Prepared`] and take force, stiffness and damping from one [`Response`]; the laws of two cylinders are built
+//! [`PreparedLaw`] and take force, stiffness and damping from one [`Response`]; the laws of two cylinders are built
 //! from their geometry by [`CylinderLaw::between`](elastic::CylinderLaw::between).
 //!
 //! # Conventions
@@ -55,7 +55,7 @@ pub use dissipation::Dissipation;
 pub use elastic::Elastic;
 pub use film::Film;
 pub use friction::{Friction, Rub};
-pub use law::{Approach, Law, Prepared, Response};
+pub use law::{Approach, Law, PreparedLaw, Response};
 pub use lubricant::Lubricant;
 pub use material::Elasticity;
 pub use onset::interpolated_onset;

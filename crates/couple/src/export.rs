@@ -1,4 +1,4 @@
-//! What a unit is made of: a scene, and what is known of it beside.
+//! Contents of a unit: a scene, and the facts found when it was exported.
 
 use std::convert::Infallible;
 use std::path::{Path, PathBuf};
@@ -10,23 +10,23 @@ use chaindrive::{
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
-/// Name of the library in a unit, without what its platform puts before and behind it.
+/// Name of the library in a unit, without what its platform puts before and after it.
 pub const LIBRARY: &str = "chaindrive_fmu";
 
 /// Files of a unit among its resources.
 const SCENE: &str = "scene.toml";
 const EXPORT: &str = "export.json";
 
-/// What a unit is made of.
+/// Contents of a unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Export {
     /// Text of the scene, settings of the run included.
     pub scene: String,
-    /// What is known of it beside.
+    /// Facts found at the export.
     pub facts: Facts,
 }
 
-/// What a unit says beside its scene.
+/// Facts of a unit beside its scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Facts {
     /// Build that made the unit.
@@ -57,9 +57,9 @@ pub struct RunFacts {
 }
 
 /// Keeps no samples.
-struct Unkept;
+struct DiscardSink;
 
-impl Sink for Unkept {
+impl Sink for DiscardSink {
     type Error = Infallible;
 
     fn begin(&mut self, _: &Simulation, _: &[Channel], _: &Provenance) -> Result<(), Infallible> {
@@ -114,7 +114,7 @@ impl Export {
         request: &Request,
         onlooker: &dyn Onlooker,
     ) -> Result<(), RunError<Infallible>> {
-        let report = execute(request, &mut Unkept, onlooker)?;
+        let report = execute(request, &mut DiscardSink, onlooker)?;
         if matches!(report.stop, Stop::Interrupted) {
             return Err(RunError::Interrupted);
         }

@@ -3,12 +3,12 @@
 use std::ffi::CStr;
 use std::sync::Arc;
 
-use chaindrive::{SealError, Sealed, Simulation, Snapshot, View, opened, sealed};
+use chaindrive::{SealError, SealedValue, Simulation, Snapshot, View, opened, sealed};
 use serde::{Deserialize, Serialize};
 
 use crate::fault::Fault;
 use crate::model::Model;
-use crate::signal::{Held, Point, Signal};
+use crate::signal::{CommunicationPoint, InputState, Signal};
 use crate::variable::{
     Causality, EXTRAPOLATION, HELD, Kind, LINEAR, Role, SCENE, SHAFT_INPUT, Variable,
 };
@@ -65,27 +65,27 @@ pub struct Instance {
     /// Values that were read last, and whether they are those of the present.
     values: Vec<f64>,
     fresh: bool,
-    at: Coupled,
+    at: InstanceState,
 }
 
 /// An instance as it was at a communication point: read back by the build that wrote it alone.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Saved {
+pub struct SavedInstance {
     token: String,
     snapshot: Snapshot,
-    at: Coupled,
+    at: InstanceState,
 }
 
 /// All that an instance knows beside its drive.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Coupled {
+struct InstanceState {
     phase: Phase,
     /// Time of the importer at the start of the drive \[s\].
     begin: f64,
     /// Communication point \[s\], and the step that ended there.
     time: f64,
     step: f64,
-    signals: Vec<Held>,
+    signals: Vec<InputState>,
     shafts: Vec<i64>,
     extrapolation: i64,
     /// Work of the inputs, and what of it has not arrived \[J\].
@@ -93,11 +93,11 @@ struct Coupled {
     error: f64,
 }
 
-impl Sealed for Saved {
+impl SealedValue for SavedInstance {
     const KIND: &'static str = "state of a unit";
 }
 
-impl Saved {
+impl SavedInstance {
     /// The state as bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         sealed(self)
@@ -122,12 +122,14 @@ impl Instance {
         let view = simulation.view(&model.ports.channels);
         let view = view.expect("the ports have channels of this drive");
         let signals = model.ports.signals.iter();
-        let at = Coupled {
+        let at = InstanceState {
             phase: Phase::Instantiated,
             begin: 0.0,
             time: 0.0,
             step: 0.0,
-            signals: signals.map(|signal| Held::new(signal.start)).collect(),
+            signals: signals
+                .map(|signal| InputState::new(signal.start))
+                .collect(),
             shafts: model.ports.shafts.clone(),
             extrapolation: HELD,
             work: 0.0,
@@ -143,7 +145,7 @@ impl Instance {
         }
     }
 
-    /// What it is one of.
+    /// Its model.
     pub fn model(&self) -> &Arc<Model> {
         &self.model
     }
@@ -289,7 +291,7 @@ impl Instance {
     pub fn start_at(&mut self, start: f64) -> Result<(), Fault> {
         self.require(
             &[Phase::Instantiated],
-            "the initialization begins once, behind the instantiation",
+            "the initialization begins once, after the instantiation",
         )?;
         if !start.is_finite() {
             return Err(Fault::new(format!("the start time {start} is not finite")));
@@ -378,9 +380,9 @@ impl Instance {
             if !self.fresh {
                 self.refresh();
             }
-            let point = Point {
-                behind: self.at.step,
-                ahead: step,
+            let point = CommunicationPoint {
+                last_step: self.at.step,
+                next_step: step,
                 linear: self.at.extrapolation == LINEAR,
             };
             let held = &mut self.at.signals[index];
@@ -400,10 +402,7 @@ impl Instance {
     /// # Errors
     /// [`Fault`]: not the time for it.
     pub fn terminate(&mut self) -> Result<(), Fault> {
-        self.require(
-            &[Phase::Stepping],
-            "it ends once, behind the initialization",
-        )?;
+        self.require(&[Phase::Stepping], "it ends once, after the initialization")?;
         self.at.phase = Phase::Terminated;
         Ok(())
     }
@@ -417,13 +416,13 @@ impl Instance {
     ///
     /// # Errors
     /// [`Fault`]: its motion has failed.
-    pub fn save(&self) -> Result<Saved, Fault> {
+    pub fn save(&self) -> Result<SavedInstance, Fault> {
         if self.at.phase == Phase::Failed {
             return Err(Fault::new(
                 "its motion has failed: there is no state to keep; reset it, or set an earlier one",
             ));
         }
-        Ok(Saved {
+        Ok(SavedInstance {
             token: self.model.token().to_owned(),
             snapshot: self.simulation.snapshot(),
             at: self.at.clone(),
@@ -434,7 +433,7 @@ impl Instance {
     ///
     /// # Errors
     /// [`Fault`]: it is of another unit. Nothing is changed then.
-    pub fn restore(&mut self, saved: &Saved) -> Result<(), Fault> {
+    pub fn restore(&mut self, saved: &SavedInstance) -> Result<(), Fault> {
         if saved.token != self.model.token() || saved.at.signals.len() != self.at.signals.len() {
             return Err(Fault::new("the state is of another unit"));
         }

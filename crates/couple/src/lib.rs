@@ -25,7 +25,7 @@ mod variable;
 pub use description::Standard;
 pub use export::{Export, Facts, LIBRARY, ResourceError, RunFacts};
 pub use fault::Fault;
-pub use instance::{Instance, Phase, Saved};
+pub use instance::{Instance, Phase, SavedInstance};
 pub use model::{Model, ModelError};
 pub use package::{PackageError, package, platform, write};
 pub use variable::{Causality, Choices, Kind, Variable};

@@ -52,9 +52,9 @@ const GAUGES: [Channel; 8] = [
 pub(crate) struct Ports {
     pub(crate) variables: Vec<Variable>,
     pub(crate) signals: Vec<Signal>,
-    /// What turns every shaft at the start.
+    /// Kind of drive of every shaft at the start.
     pub(crate) shafts: Vec<i64>,
-    /// Channels that are read, one behind the other.
+    /// Channels that are read, one after the other.
     pub(crate) channels: Vec<Channel>,
 }
 
@@ -376,7 +376,7 @@ impl Builder<'_> {
         }
     }
 
-    /// What a run at the export has said.
+    /// Adds the figures of the run at the export.
     fn facts(&mut self, facts: &Facts) {
         let mut text = |name: &str, description: &str, value: &str| {
             // A text of C ends at its first zero byte.

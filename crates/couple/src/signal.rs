@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 /// Way of a centre that rounding alone makes \[m\]. *Assumed*: far below any clearance.
 const AT_REST: f64 = 1e-14;
 
-/// What an input acts on.
+/// Part of the drive that an input acts on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Torque,
@@ -55,19 +55,19 @@ pub(crate) struct Signal {
 
 /// An input as it stands.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Held {
+pub(crate) struct InputState {
     /// As it was set last.
     pub(crate) value: f64,
     /// Slope that the importer gave for the next step.
     pub(crate) slope: Option<f64>,
     /// Whether it acts: from the first time on that it differs from its start.
     acts: bool,
-    last: Option<Last>,
+    last: Option<LastStep>,
 }
 
 /// The last step of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Last {
+struct LastStep {
     value: f64,
     /// Value that acted at its end.
     end: f64,
@@ -80,20 +80,20 @@ struct Last {
 
 /// Energy through an input in one step \[J\].
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Exchanged {
+pub(crate) struct ExchangedEnergy {
     pub(crate) work: f64,
     pub(crate) error: f64,
 }
 
-/// A communication point: the step behind it and the one before it \[s\].
+/// A communication point: the step that ended there, and the one that begins \[s\].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Point {
-    pub(crate) behind: f64,
-    pub(crate) ahead: f64,
+pub(crate) struct CommunicationPoint {
+    pub(crate) last_step: f64,
+    pub(crate) next_step: f64,
     pub(crate) linear: bool,
 }
 
-impl Held {
+impl InputState {
     pub(crate) fn new(value: f64) -> Self {
         Self {
             value,
@@ -120,27 +120,27 @@ impl Held {
         self.acts
     }
 
-    /// Its courses in the step ahead, none if what acts goes on, and the energy through it in the step behind.
+    /// Input courses of the next step (none if unchanged), and the energy exchanged in the last.
     pub(crate) fn pass(
         &mut self,
         signal: &Signal,
-        point: Point,
+        point: CommunicationPoint,
         values: &[f64],
-    ) -> (Vec<Course>, Exchanged) {
+    ) -> (Vec<Course>, ExchangedEnergy) {
         let place = signal.place.map_or(0.0, |index| values[index]);
         let torque: f64 = signal.torques.iter().map(|index| values[*index]).sum();
-        let exchanged = self.exchanged(signal.kind, point.behind, place, torque);
+        let exchanged = self.exchanged(signal.kind, point.last_step, place, torque);
         let given = self.slope.take();
         let linear = point.linear || given.is_some();
         let slope = given.unwrap_or(match self.last {
-            Some(last) if point.behind > 0.0 => (self.value - last.value) / point.behind,
+            Some(last) if point.last_step > 0.0 => (self.value - last.value) / point.last_step,
             _ => 0.0,
         });
         let rate = if linear { slope } else { 0.0 };
         let u = self.value;
-        let mut last = Last {
+        let mut last = LastStep {
             value: u,
-            end: u + rate * point.ahead,
+            end: u + rate * point.next_step,
             place,
             speed: 0.0,
             course: None,
@@ -167,14 +167,14 @@ impl Held {
                 let turning = signal.speed.map_or(0.0, |index| values[index]);
                 vec![Course {
                     to: last.end,
-                    over: point.ahead,
+                    over: point.next_step,
                     rate: if known { slope } else { turning },
                 }]
             }
             Kind::Centre => {
                 let v = before.map_or(0.0, |it| it.speed);
                 last.speed = slope;
-                let h = point.ahead;
+                let h = point.next_step;
                 let way = last.end - place;
                 if way.abs() < AT_REST && v == 0.0 && slope == 0.0 {
                     let rest = Course::from(0.0);
@@ -198,26 +198,26 @@ impl Held {
         (courses, exchanged)
     }
 
-    fn exchanged(&self, kind: Kind, h: f64, place: f64, torque: f64) -> Exchanged {
+    fn exchanged(&self, kind: Kind, h: f64, place: f64, torque: f64) -> ExchangedEnergy {
         let Some(last) = self.last else {
-            return Exchanged::default();
+            return ExchangedEnergy::default();
         };
         let way = place - last.place;
         let missed = self.value - last.end;
         match kind {
-            Kind::Torque | Kind::Force => Exchanged {
+            Kind::Torque | Kind::Force => ExchangedEnergy {
                 work: 0.5 * (last.value + last.end) * way,
                 error: missed * way,
             },
-            Kind::Speed => Exchanged {
+            Kind::Speed => ExchangedEnergy {
                 work: -torque * way,
                 error: -torque * missed * h,
             },
-            Kind::Angle => Exchanged {
+            Kind::Angle => ExchangedEnergy {
                 work: -torque * way,
                 error: -torque * (self.value - last.value - way),
             },
-            Kind::Centre | Kind::Parameter => Exchanged::default(),
+            Kind::Centre | Kind::Parameter => ExchangedEnergy::default(),
         }
     }
 }

@@ -63,7 +63,7 @@ pub struct Choices {
     pub items: &'static [(&'static str, &'static str)],
 }
 
-/// What turns a shaft.
+/// Choices of what turns a shaft.
 pub(crate) const SHAFT_INPUT: Choices = Choices {
     name: "ShaftInput",
     description: "input that acts on a shaft",
@@ -79,7 +79,7 @@ pub(crate) const TORQUE: i64 = 2;
 pub(crate) const SPEED: i64 = 3;
 pub(crate) const ANGLE: i64 = 4;
 
-/// What inputs do between two communication points.
+/// Choices of how inputs go on between two communication points.
 pub(crate) const EXTRAPOLATION: Choices = Choices {
     name: "Extrapolation",
     description: "course of inputs between two communication points",
@@ -91,7 +91,7 @@ pub(crate) const EXTRAPOLATION: Choices = Choices {
 pub(crate) const HELD: i64 = 1;
 pub(crate) const LINEAR: i64 = 2;
 
-/// Where the value of a variable lives.
+/// Role of a variable: where its value is read or set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
     Time,

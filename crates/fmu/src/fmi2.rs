@@ -21,7 +21,7 @@ use crate::states;
 use crate::units::Handle;
 use crate::versions::functions;
 
-/// `fmi2CallbackFunctions`; the library keeps its own memory and never works behind the importer.
+/// `fmi2CallbackFunctions`; the library keeps its own memory and never works behind the importer's back.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct CallbackFunctions {

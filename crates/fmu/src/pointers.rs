@@ -55,7 +55,7 @@ impl<T: Copy> Room<T> {
         Ok(Self { pointer, count })
     }
 
-    /// Writes a value; one behind the end is left out.
+    /// Writes a value; one past the end is left out.
     pub(crate) fn put(&mut self, index: usize, value: T) {
         if index < self.count {
             // SAFETY: within the room, so that the place is in the same allocation.

@@ -6,7 +6,7 @@
 
 use std::sync::{Arc, MutexGuard, PoisonError};
 
-use chaindrive_couple::{Fault, Instance, Saved};
+use chaindrive_couple::{Fault, Instance, SavedInstance};
 
 use crate::pointers::{Room, array, give};
 use crate::units::{Handle, Unit, handle, number};
@@ -19,26 +19,26 @@ const HEADING: usize = 16;
 /// Most bytes of a state.
 const MOST: usize = 1 << 32;
 
-type States<'a> = MutexGuard<'a, std::collections::HashMap<usize, Arc<Saved>>>;
+type States<'a> = MutexGuard<'a, std::collections::HashMap<usize, Arc<SavedInstance>>>;
 
 fn states(unit: &Unit) -> States<'_> {
     unit.states.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn known(unit: &Unit, state: Handle) -> Result<Arc<Saved>, Fault> {
+fn known(unit: &Unit, state: Handle) -> Result<Arc<SavedInstance>, Fault> {
     let found = states(unit).get(&state.addr()).cloned();
     found
         .ok_or_else(|| Fault("no state has this handle; it was never kept, or is freed".to_owned()))
 }
 
-fn bytes(saved: &Saved) -> Vec<u8> {
+fn bytes(saved: &SavedInstance) -> Vec<u8> {
     let content = saved.to_bytes();
     let length = (HEADING + content.len()) as u64;
     [&MARK[..], &length.to_le_bytes(), &content].concat()
 }
 
 /// Keeps a state under the handle that is there, or a new one.
-fn put(unit: &Unit, place: *mut Handle, saved: Saved) -> Result<(), Fault> {
+fn put(unit: &Unit, place: *mut Handle, saved: SavedInstance) -> Result<(), Fault> {
     // SAFETY: null is refused; otherwise the standard has a handle there.
     let there = unsafe { array(place.cast_const(), 1, 1) }?;
     let mut states = states(unit);
@@ -123,6 +123,7 @@ pub(crate) fn read(
     }
     // SAFETY: as above; the heading says the same length.
     let whole = unsafe { array(bytes, size, MOST) }?;
-    let saved = Saved::from_bytes(&whole[HEADING..]).map_err(|error| Fault(error.to_string()))?;
+    let saved =
+        SavedInstance::from_bytes(&whole[HEADING..]).map_err(|error| Fault(error.to_string()))?;
     put(unit, place, saved)
 }

@@ -5,7 +5,7 @@ use std::ffi::c_void;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
-use chaindrive_couple::{Instance, Saved};
+use chaindrive_couple::{Instance, SavedInstance};
 
 use crate::logger::Logger;
 
@@ -18,7 +18,7 @@ pub(crate) struct Unit {
     pub(crate) instance: Mutex<Instance>,
     pub(crate) logger: Logger,
     /// States that the importer keeps.
-    pub(crate) states: Mutex<HashMap<usize, Arc<Saved>>>,
+    pub(crate) states: Mutex<HashMap<usize, Arc<SavedInstance>>>,
 }
 
 static UNITS: RwLock<Option<HashMap<usize, Arc<Unit>>>> = RwLock::new(None);

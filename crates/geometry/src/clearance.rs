@@ -1,4 +1,4 @@
-//! How near two curves come to each other, or how deep one is in the other.
+//! Clearance of two curves, or the depth of one in the other.
 
 use crate::{ArcSpline, Piece, Point};
 

@@ -51,7 +51,7 @@ impl Foot {
     }
 }
 
-/// How two neighbouring pieces meet, or that there is no neighbour.
+/// Joint between two neighbouring pieces, or the end of the curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Joint {
     /// No change of direction.
@@ -94,7 +94,7 @@ pub(crate) struct Station {
 
 /// Where on a piece the distance is locally smallest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Place {
+pub(crate) enum PiecePart {
     Start,
     Inside,
     End,
@@ -104,7 +104,7 @@ impl Station {
     /// Calls `found` with every place of this piece locally nearest to `p` and its signed distance.
     ///
     /// The joint before the piece counts as its own, the one after it only at an open end.
-    pub(crate) fn visit(&self, p: Point, mut found: impl FnMut(Place, f64)) {
+    pub(crate) fn visit(&self, p: Point, mut found: impl FnMut(PiecePart, f64)) {
         let after_start = self.start.is_ahead(p);
         let after_end = self.end.is_ahead(p);
         if !after_start {
@@ -114,9 +114,9 @@ impl Station {
             };
             let distance = || (p - self.start.point).norm();
             match self.joint {
-                Joint::Free => found(Place::Start, distance()),
-                Joint::Convex if before.is_ahead(p) => found(Place::Start, distance()),
-                Joint::Reentrant if before.is_ahead(p) => found(Place::Start, -distance()),
+                Joint::Free => found(PiecePart::Start, distance()),
+                Joint::Convex if before.is_ahead(p) => found(PiecePart::Start, distance()),
+                Joint::Reentrant if before.is_ahead(p) => found(PiecePart::Start, -distance()),
                 _ => {}
             }
         }
@@ -124,7 +124,7 @@ impl Station {
             Piece::Segment(_) => {
                 if after_start && !after_end {
                     let normal = right_of(self.start.tangent);
-                    found(Place::Inside, (p - self.start.point).dot(&normal));
+                    found(PiecePart::Inside, (p - self.start.point).dot(&normal));
                 }
             }
             Piece::Arc(arc) => {
@@ -136,18 +136,21 @@ impl Station {
                 };
                 // d = ρ − r about convex material, r − ρ in a concave seat
                 if within || is_centre(radial, arc.centre, arc.radius) {
-                    found(Place::Inside, (radial - arc.radius) * arc.sweep.signum());
+                    found(
+                        PiecePart::Inside,
+                        (radial - arc.radius) * arc.sweep.signum(),
+                    );
                 }
             }
         }
         if self.last && after_end {
-            found(Place::End, (p - self.end.point).norm());
+            found(PiecePart::End, (p - self.end.point).norm());
         }
     }
 
     /// The smallest distance of a place of this piece, if it has a locally nearest one.
-    pub(crate) fn nearest(&self, p: Point) -> Option<(Place, f64)> {
-        let mut best: Option<(Place, f64)> = None;
+    pub(crate) fn nearest(&self, p: Point) -> Option<(PiecePart, f64)> {
+        let mut best: Option<(PiecePart, f64)> = None;
         self.visit(p, |place, distance| {
             if best.is_none_or(|(_, least)| distance.abs() < least.abs()) {
                 best = Some((place, distance));
@@ -157,7 +160,7 @@ impl Station {
     }
 
     /// Everything about a place found by [`visit`](Self::visit).
-    pub(crate) fn foot(&self, index: usize, p: Point, place: Place, distance: f64) -> Foot {
+    pub(crate) fn foot(&self, index: usize, p: Point, place: PiecePart, distance: f64) -> Foot {
         let vertex = |point: Point, parameter: f64| Foot {
             point,
             normal: (p - point) / distance,
@@ -171,15 +174,15 @@ impl Station {
             parameter,
         };
         let (normal, parameter) = match (place, &self.piece) {
-            (Place::Start, _) => return vertex(self.start.point, 0.0),
-            (Place::End, _) if distance > 0.0 => return vertex(self.end.point, 1.0),
+            (PiecePart::Start, _) => return vertex(self.start.point, 0.0),
+            (PiecePart::End, _) if distance > 0.0 => return vertex(self.end.point, 1.0),
             // The very end of the curve itself: no direction to the point, take the face's.
-            (Place::End, _) => (right_of(self.end.tangent), 1.0),
-            (Place::Inside, Piece::Segment(segment)) => {
+            (PiecePart::End, _) => (right_of(self.end.tangent), 1.0),
+            (PiecePart::Inside, Piece::Segment(segment)) => {
                 let along = (p - segment.start).dot(&self.start.tangent) / segment.length();
                 (right_of(self.start.tangent), along.clamp(0.0, 1.0))
             }
-            (Place::Inside, Piece::Arc(arc)) => {
+            (PiecePart::Inside, Piece::Arc(arc)) => {
                 let spoke = p - arc.centre;
                 let radial = spoke.norm();
                 let sign = arc.sweep.signum();

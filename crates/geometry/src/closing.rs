@@ -37,9 +37,9 @@ pub struct Seating {
     pub pitches: u32,
 }
 
-/// Where a roller is, and on which wheel.
+/// A roller of the closed chain: its centre, and its seat.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct RollerPlace {
     /// Centre of the roller \[m\].
     pub position: Point,
     /// Wheel, and ordinal of the seat counted from the first seated roller; none in a free span.
@@ -167,7 +167,11 @@ impl Closing {
     ///
     /// # Errors
     /// A number of wheels other than that of the chain; a pitch out of range.
-    pub fn positions(&self, wheels: &[Wheel], pitch: f64) -> Result<Vec<Place>, GeometryError> {
+    pub fn positions(
+        &self,
+        wheels: &[Wheel],
+        pitch: f64,
+    ) -> Result<Vec<RollerPlace>, GeometryError> {
         if wheels.len() != self.seats.len() {
             let (what, got) = ("wheels of a closed chain", wheels.len());
             return Err(GeometryError::Count {
@@ -189,7 +193,7 @@ impl Closing {
         for (i, (seat, &links)) in self.seats.iter().zip(&self.spans).enumerate() {
             let seats = lattice(i);
             for q in 0..=seat.pitches {
-                places.push(Place {
+                places.push(RollerPlace {
                     position: seats.at(i64::from(q)),
                     on: Some((i, q)),
                 });
@@ -198,7 +202,7 @@ impl Closing {
             let to = lattice((i + 1) % wheels.len()).at(0);
             for q in 1..links {
                 let position = from + (to - from) * (f64::from(q) / f64::from(links));
-                places.push(Place { position, on: None });
+                places.push(RollerPlace { position, on: None });
             }
         }
         Ok(places)
@@ -281,7 +285,7 @@ impl Lattice<'_> {
     pub(crate) fn ordinal(&self, direction: f64) -> i64 {
         let turned =
             self.wheel.sense() * (direction - self.wheel.sense() * FRAC_PI_2 - self.origin);
-        // Just behind the first seat counts as the first seat, not as the end of a full turn.
+        // Just past the first seat counts as the first seat, not as the end of a full turn.
         let ahead = (turned + 2.0 * self.half).rem_euclid(TAU) - 2.0 * self.half;
         whole(ahead / (2.0 * self.half))
     }
@@ -361,7 +365,7 @@ impl Lattice<'_> {
             return None;
         }
         let turned = 2.0 * squared.sqrt().asin();
-        // The chain arrives before it turns: behind the bearing in the sense of the wheel.
+        // The chain arrives before it turns: past the bearing in the sense of the wheel.
         let ends = [bearing + turned, bearing - turned].map(|angle| {
             let span = wheel.at(angle) - from;
             let direction = span.y.atan2(span.x);

@@ -1,4 +1,4 @@
-//! Where two curves meet.
+//! Intersections of two curves.
 
 use crate::{Arc, ArcSpline, Piece, Point, Segment, Vector};
 
@@ -11,8 +11,8 @@ pub struct Crossing {
     pub along: [f64; 2],
 }
 
-/// How far beyond the ends of a piece a crossing still counts, in fractions of the size of the curves: at a joint rounding must
-/// not let it fall between two pieces.
+/// Distance beyond the ends of a piece at which a crossing still counts, in fractions of the size of the curves: at a joint rounding must
+/// not lose it between two pieces.
 const ROUNDING: f64 = 1e-12;
 
 /// Crossings closer than this fraction of the size of the curves are one, met on both sides of a joint.

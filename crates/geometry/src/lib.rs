@@ -76,13 +76,13 @@ mod route;
 mod two_wheels;
 
 pub use closing::{
-    Closing, LinkCounts, Place, Search, Seating, close_by_motion, close_by_strain, close_nearest,
-    closing_strains,
+    Closing, LinkCounts, RollerPlace, Search, Seating, close_by_motion, close_by_strain,
+    close_nearest, closing_strains,
 };
 pub use on_span::{CurvedGuide, IdlerByWrap};
 pub use plan::{Plan, Station};
 pub use polygon_action::{
-    ChordalAction, Driven, PolygonAction, PressureAngles, SeatingVelocity, mesh_frequency,
+    ChordalAction, DrivenState, PolygonAction, PressureAngles, SeatingVelocity, mesh_frequency,
 };
 pub use route::{Route, Side, Span, Wheel, WheelKind};
 pub use two_wheels::TwoWheels;

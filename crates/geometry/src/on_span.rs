@@ -1,6 +1,6 @@
 //! Guides and idlers placed by the span that they work on, not by coordinates.
 //!
-//! A place along a span is a *share*: 0 where the chain leaves the wheel before, 1 where it arrives at the wheel behind.
+//! A place along a span is a *share*: 0 where the chain leaves the wheel before, 1 where it arrives at the wheel after.
 
 use crate::{Arc, GeometryError, Point, Route, Side, Span, Vector, Wheel};
 

@@ -7,7 +7,7 @@ use crate::{Arc, CurvedGuide, GeometryError, IdlerByWrap, Route, Vector, Wheel};
 pub enum Station {
     /// A wheel with a place of its own.
     Wheel(Wheel),
-    /// A curved guide on the bare span between the wheels before and behind that have places of their own.
+    /// A curved guide on the bare span between the wheels before and after that have places of their own.
     Guide(CurvedGuide),
     /// An idler on that bare span.
     Idler {

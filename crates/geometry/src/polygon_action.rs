@@ -29,10 +29,10 @@ use crate::closing::Lattice;
 use crate::route::check_teeth;
 use crate::{GeometryError, Point, Side, Vector, Wheel};
 
+mod chordal_action;
 mod extremes;
-mod one_sprocket;
 
-pub use one_sprocket::{ChordalAction, PressureAngles, mesh_frequency};
+pub use chordal_action::{ChordalAction, PressureAngles, mesh_frequency};
 
 /// Polygon action of an open drive: two sprockets on the same side of the chain, upper span tight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +53,7 @@ pub struct PolygonAction {
 
 /// State of the drive at one angle of its driver.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Driven {
+pub struct DrivenState {
     /// Angle θ₂ of the driven wheel since the seating at θ₁ = 0 \[rad\].
     pub angle: f64,
     /// Speed ratio ω₂/ω₁ \[–\], z₁/z₂ in the mean.
@@ -72,7 +72,7 @@ pub struct Driven {
     pub driven_seat: f64,
 }
 
-/// How a roller comes to its seat on the driver, see [`PolygonAction::seating_velocity`].
+/// Relative velocity of a roller at its seat on the driver, see [`PolygonAction::seating_velocity`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeatingVelocity {
     /// Speed of the roller relative to its seat, divided by p ω₁ \[–\].
@@ -208,7 +208,7 @@ impl PolygonAction {
     /// dψ/dθ₁ = (R₁ sin φ_A − R₂ (ω₂/ω₁) sin φ_B) / (n p)
     /// d(ω₂/ω₁)/dθ₁ = (ω₂/ω₁) (tan φ_B dφ_B/dθ₁ − tan φ_A dφ_A/dθ₁),   dφ/dθ₁ = ω/ω₁ − dψ/dθ₁
     /// ```
-    pub fn driven(&self, driver_angle: f64) -> Driven {
+    pub fn driven(&self, driver_angle: f64) -> DrivenState {
         let [h1, h2] = self.half();
         let tooth = (driver_angle / (2.0 * h1)).floor();
         let within = driver_angle - tooth * 2.0 * h1;
@@ -218,7 +218,7 @@ impl PolygonAction {
     }
 
     /// State in the first period, by the linkage that holds there.
-    fn after_seating(&self, within: f64) -> Driven {
+    fn after_seating(&self, within: f64) -> DrivenState {
         let lifted = within >= self.lift_off;
         let turned = if lifted { 2.0 * self.half()[1] } else { 0.0 };
         let links = self.seated_links + u32::from(lifted);
@@ -232,7 +232,7 @@ impl PolygonAction {
         )
     }
 
-    fn evaluate(&self, linkage: &Linkage, within: f64) -> Driven {
+    fn evaluate(&self, linkage: &Linkage, within: f64) -> DrivenState {
         let [r1, r2] = self.radii;
         let length = f64::from(linkage.links) * self.pitch;
         let a = linkage.driver + within;
@@ -253,7 +253,7 @@ impl PolygonAction {
         // d(ω₂/ω₁)/dθ₁ = (ω₂/ω₁) (tan φ_B dφ_B/dθ₁ − tan φ_A dφ_A/dθ₁),   dφ/dθ₁ = ω/ω₁ − dψ/dθ₁
         let ratio_rate = ratio
             * (driven_seat.tan() * (ratio - span_rate) - driver_seat.tan() * (1.0 - span_rate));
-        Driven {
+        DrivenState {
             angle: b + linkage.turned - self.seated_driven,
             ratio,
             ratio_rate,

@@ -152,7 +152,7 @@ pub struct Span {
     pub length: f64,
     /// Where the chain leaves the wheel before \[m\].
     pub leaves: Point,
-    /// Where the chain arrives at the wheel behind \[m\].
+    /// Where the chain arrives at the next wheel \[m\].
     pub arrives: Point,
 }
 
@@ -242,7 +242,7 @@ impl Route {
         straight + wrapped
     }
 
-    /// How the route grows when a wheel moves, its gradient by the centre \[–\]: the direction of the greatest effect.
+    /// Gradient of the route's length by the centre of a wheel \[–\]: the direction of the greatest effect.
     ///
     /// ```text
     /// dL/dc_i = u_in − u_out        |dL/dc_i| = 2 sin(w_i / 2)
@@ -258,7 +258,7 @@ impl Route {
         arriving.along() - self.spans[wheel].along()
     }
 
-    /// The sprocket behind the first stop that changes the length most when it moves, and the direction: of two the line of
+    /// The sprocket after the first stop that changes the length most when it moves, and the direction: of two the line of
     /// centres. None where there is no other sprocket.
     pub fn most_effective(&self) -> Option<(usize, Vector)> {
         let toothed = |wheel: &usize| matches!(self.wheels[*wheel].kind, WheelKind::Toothed { .. });

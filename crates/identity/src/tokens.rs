@@ -8,13 +8,13 @@ use proc_macro2::{Delimiter, Group, LexError, TokenStream, TokenTree};
 /// The tokens of a file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tokens {
-    /// One after the other, each with a space behind it.
+    /// One after the other, each with a space after it.
     pub text: String,
     /// Names of modules in files of their own that are compiled for tests alone.
     pub test_modules: Vec<String>,
 }
 
-/// Words that begin an item; what else stands behind an attribute ends at a comma too.
+/// Words that begin an item; what else stands after an attribute ends at a comma too.
 const ITEMS: [&str; 16] = [
     "async",
     "const",

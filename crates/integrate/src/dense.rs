@@ -11,7 +11,7 @@ pub(crate) struct Interval {
     s: f64,
 }
 
-/// How to read positions and velocities between two accepted states: what the ends know at the order of the method.
+/// Interpolation of positions and velocities between two accepted states, at the order of the method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Interpolation {
     /// From q, v and a of both ends.

@@ -6,7 +6,7 @@ use crate::InstructionSetError;
 
 /// The quantity that is not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum StateQuantity {
     /// A position.
     Position,
     /// A velocity.
@@ -19,7 +19,7 @@ pub enum Quantity {
     Quadrature,
 }
 
-impl fmt::Display for Quantity {
+impl fmt::Display for StateQuantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Position => "position",
@@ -90,6 +90,6 @@ pub enum IntegrationError {
     NotFinite {
         t: f64,
         dof: usize,
-        quantity: Quantity,
+        quantity: StateQuantity,
     },
 }

@@ -77,7 +77,7 @@ mod tolerance;
 mod verlet;
 
 pub use array::Array;
-pub use error::{IntegrationError, Quantity};
+pub use error::{IntegrationError, StateQuantity};
 pub use memory::StepperMemory;
 pub use method::Method;
 pub use registers::{InstructionSet, InstructionSetError, Registers};

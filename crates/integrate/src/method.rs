@@ -292,7 +292,7 @@ impl Method {
         ]
     }
 
-    /// How to read between the states it accepts.
+    /// Interpolation between the states that it accepts.
     pub(crate) fn interpolation(&self) -> Interpolation {
         match self {
             Self::Verlet { .. } | Self::Rk4 { .. } | Self::DormandPrince { .. } => {

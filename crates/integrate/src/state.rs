@@ -25,7 +25,7 @@ pub struct State {
     pub a: Array,
     /// Quantities integrated along with the motion `(quadratures)`.
     pub quadratures: Array,
-    /// Rates of the quadratures, and of the states behind them, the next step begins with.
+    /// Rates of the quadratures, and of the states after them, the next step begins with.
     pub(crate) rates: Array,
     /// The accepted state before this one.
     pub(crate) previous: Snapshot,
@@ -33,7 +33,7 @@ pub struct State {
     pub(crate) before_jump: (Array, Array),
     /// Whether a jump has replaced them.
     pub(crate) jumped: bool,
-    /// How to read between the accepted states, as the method wants it.
+    /// Interpolation between the accepted states, as the method wants it.
     pub(crate) interpolation: Interpolation,
 }
 
@@ -96,7 +96,7 @@ impl Snapshot {
     }
 }
 
-/// How many there are of everything.
+/// Numbers of coordinates, states and quadratures.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Size {
     pub(crate) dofs: usize,

@@ -1,4 +1,4 @@
-//! How long the next step may be: stability, error, and the system's own verdict.
+//! Length of the next step: by stability, by error, and by the verdict of the system.
 
 use serde::{Deserialize, Serialize};
 

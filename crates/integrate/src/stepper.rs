@@ -10,8 +10,8 @@ use crate::outcome::Outcome;
 use crate::state::{Size, Snapshot, State};
 use crate::step_size::{Controller, FLOOR, Fixed, first_step, shortened};
 use crate::{
-    Array, Continuity, InstructionSet, IntegrationError, Method, Moment, Quantity,
-    SecondOrderSystem, Statistics, Verdict,
+    Array, Continuity, InstructionSet, IntegrationError, Method, Moment, SecondOrderSystem,
+    StateQuantity, Statistics, Verdict,
 };
 
 /// An accepted step.
@@ -80,7 +80,7 @@ impl Method {
     }
 }
 
-/// Who decides on the length of a step.
+/// Control of the step length.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) enum Pace {
     Fixed(Fixed),
@@ -376,16 +376,16 @@ fn culprit(candidate: &Snapshot) -> IntegrationError {
 /// Names the first entry that is not finite of positions, velocities, accelerations, quadratures and states.
 fn first_not_finite(t: f64, [q, v, a, quadratures, z]: [&Array; 5]) -> IntegrationError {
     let parts = [
-        (Quantity::Acceleration, a),
-        (Quantity::Position, q),
-        (Quantity::Velocity, v),
-        (Quantity::State, z),
-        (Quantity::Quadrature, quadratures),
+        (StateQuantity::Acceleration, a),
+        (StateQuantity::Position, q),
+        (StateQuantity::Velocity, v),
+        (StateQuantity::State, z),
+        (StateQuantity::Quadrature, quadratures),
     ];
     let found = parts.into_iter().find_map(|(quantity, part)| {
         let dof = part.iter().position(|value| !value.is_finite())?;
         Some((quantity, dof))
     });
-    let (quantity, dof) = found.unwrap_or((Quantity::Velocity, 0));
+    let (quantity, dof) = found.unwrap_or((StateQuantity::Velocity, 0));
     IntegrationError::NotFinite { t, dof, quantity }
 }

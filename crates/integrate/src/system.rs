@@ -1,6 +1,6 @@
 //! Questions that a system answers in order to be stepped through time.
 
-/// Where an evaluation happens.
+/// Time and state at which an evaluation happens.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<'a> {
     /// Time t \[s\].
@@ -21,7 +21,7 @@ impl<'a> Moment<'a> {
     }
 }
 
-/// How the velocities of a moment were predicted, for forces that look ahead of them.
+/// Predicted velocities of a moment, for forces that look ahead.
 ///
 /// ```text
 /// v⁺ = v + ½ h (a⁺ − a),   v = v₀ + h a
@@ -44,9 +44,9 @@ pub struct Weights {
     pub damping: f64,
     /// Weight k of the stiffness \[s²\].
     pub stiffness: f64,
-    /// Whether one solution makes the whole step. Friction is then taken so that no step carries a slip beyond zero, where
-    /// Newton's iteration wants the slope; and stiffness may be left out, as [`carried_time_scale`](SecondOrderSystem::carried_time_scale) has
-    /// to know.
+    /// Whether one solution makes the whole step. Friction then takes the secant, so that no step carries a slip beyond zero; Newton's
+    /// iteration wants the slope. Stiffness may be left out, which [`carried_time_scale`](SecondOrderSystem::carried_time_scale) has to
+    /// know.
     pub once: bool,
 }
 
@@ -106,7 +106,7 @@ pub trait SecondOrderSystem {
         0
     }
 
-    /// Accelerations a `(dofs)`, and the rates of the quadratures with those of the states behind them
+    /// Accelerations a `(dofs)`, and the rates of the quadratures with those of the states after them
     /// `(quadratures + states)`, at a moment.
     ///
     /// Pure: called several times a step, on trial states too. Must write every entry of `a` and `rates`, and may
@@ -208,7 +208,7 @@ pub trait SecondOrderSystem {
     /// ```text
     /// x ← (M + c C + k K)⁻¹ M x,   C = −∂f/∂q̇,   K = −∂f/∂q,   f = M a
     ///
-    /// with states, whose right-hand sides y stand behind those of the coordinates, x `(dofs + states)`:
+    /// with states, whose right-hand sides y stand after those of the coordinates, x `(dofs + states)`:
     /// ⎡ M + c C + k K   −c ∂f/∂z     ⎤ ⎡x⎤   ⎡M x⎤
     /// ⎣ −c ∂ż/∂q̇ − k ∂ż/∂q   1 − c ∂ż/∂z ⎦ ⎣y⎦ ← ⎣ y ⎦
     /// ```

@@ -1,4 +1,4 @@
-//! How far the sprockets of a span stand out of line.
+//! Offset of the sprockets of a span out of line.
 
 use crate::drive::{Layout, Parts, Sprocket, Stop};
 

@@ -13,7 +13,7 @@ use crate::DriveError;
 /// ```
 ///
 /// N is the force between pin and bush. A chain of particles takes the mean of the tensions of the two links for it: the pin
-/// carries the tension of the outer link, which is behind the joint and before it in turn. Ideal joints take the force that
+/// carries the tension of the outer link, which is after the joint and before it in turn. Ideal joints take the force that
 /// keeps their ends together. Joints with clearance rub in the contact of pin and bush, and have only c here.
 ///
 /// The work of one articulation through the angle 2π/z is μ r T 2π/z; a plucked strand comes to rest within a few cycles,

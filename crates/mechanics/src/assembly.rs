@@ -32,18 +32,18 @@
 //!    lumped one carried in the first stage of `relax::settle`, not T₀: one with free rollers, if T₀ is that in the mean over a tooth, and
 //!    one whose frame has grown since it was fitted. Gravity and load follow.
 
-mod apart;
-mod beginning;
 mod free_trains;
-mod hard;
-mod lay;
+mod independent_groups;
+mod layout;
+mod newton;
 mod overload;
 mod overrun;
-mod part_way;
-mod relax;
-mod setting_off;
-mod settle;
+mod pseudo_transient;
+mod rigid_links;
 mod slack;
+mod start_time;
+mod start_velocities;
+mod unclosed_chains;
 mod wheels;
 
 use std::f64::consts::TAU;
@@ -51,22 +51,22 @@ use std::f64::consts::TAU;
 use chaindrive_geometry::{ArcSpline, Point, Wheel};
 use chaindrive_integrate::{Moment, SecondOrderSystem, State};
 
-use crate::chains::LaidAs;
+use crate::body_positions::BodyPositions;
+use crate::chains::ChainAsLaid;
 use crate::check::clash::{clashes, fixed_in_teeth};
 use crate::drive::{Layout, Parts, PretensionAt};
 use crate::groups::groups;
-use crate::standing::Standing;
-use crate::system::{Laid, Member};
+use crate::system::{LaidDrive, Member};
 use crate::{AssemblyError, Clash, Drive, Motion, System};
 use crate::{MemoryError, SystemMemory};
-use settle::Tightening;
+use pseudo_transient::Tightening;
 
 pub use free_trains::FreeTrain;
-pub use part_way::Gap;
-pub use relax::Statics;
-pub(crate) use relax::{Curvature, curvature};
+pub use newton::Statics;
+pub(crate) use newton::{Curvature, curvature};
+pub use unclosed_chains::Gap;
 
-/// A drive ready to move.
+/// An assembled drive at the start of its run, with positions and velocities.
 #[derive(Clone, Debug)]
 pub struct Assembled {
     /// The drive that was assembled.
@@ -85,7 +85,7 @@ pub struct Assembled {
     pub z: Vec<f64>,
     /// Static states on the way, when the drive was settled: after pretension, gravity and load.
     pub statics: Vec<Statics>,
-    /// How every chain was fitted, where it runs around sprockets.
+    /// Fitting of every chain that runs around sprockets.
     pub fittings: Vec<Option<Fitting>>,
     /// Bodies that take the same room in the plane, and are in each other's way unless they pass side by side; and guides too short
     /// for the chain that they turn.
@@ -94,12 +94,12 @@ pub struct Assembled {
     pub(crate) parts: Parts,
 }
 
-/// How a closed chain was fitted.
+/// Fitting of a closed chain to its sprockets: links on each stop and span, and the strain that is left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fitting {
     /// Pitches seated on each stop of the route.
     pub seated: Vec<u32>,
-    /// Pitches in the span behind each stop.
+    /// Pitches in the span after each stop.
     pub spans: Vec<u32>,
     /// Strain of the links as laid \[–\], negative where a slack span sags instead.
     pub strain: f64,
@@ -109,17 +109,17 @@ pub struct Fitting {
     pub wheels: Vec<Wheel>,
 }
 
-/// Where the rollers of a chain lie before anything pulls at them.
+/// Rollers of a chain as laid, before any force acts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RollerLayout {
     /// Roller positions \[m\], (rollers,).
     pub positions: Vec<Point>,
-    /// How the chain was fitted, where it runs around sprockets.
+    /// Fitting of the chain, where it runs around sprockets.
     pub fitting: Option<Fitting>,
 }
 
 impl Assembled {
-    /// Where a run begins.
+    /// State at the start of a run.
     pub fn state(&self) -> State {
         State::new(self.time, self.q.clone(), self.v.clone()).with_states(self.z.clone())
     }
@@ -143,14 +143,14 @@ impl Assembled {
     pub(crate) fn shaft_speeds(&self) -> Vec<Option<f64>> {
         let layouts: Vec<&Layout> = self.parts.chains.iter().map(|it| &it.layout).collect();
         let mean = |motion: &Motion| motion.mean_rate(self.drive.begin);
-        setting_off::speeds(&self.system, &layouts, mean)
+        start_velocities::speeds(&self.system, &layouts, mean)
     }
 
     /// Trains that no motion turns, as they are where the simulation begins.
     pub fn free_trains(&self) -> Vec<FreeTrain> {
         let layouts: Vec<&Layout> = self.parts.chains.iter().map(|it| &it.layout).collect();
         let begin = self.system.begin;
-        let speeds = setting_off::speeds(&self.system, &layouts, |it| it.at(begin).rate);
+        let speeds = start_velocities::speeds(&self.system, &layouts, |it| it.at(begin).rate);
         // The drive was assembled, so speeds agree.
         free_trains::free_trains(&self.system, &self.parts, &self.q, &speeds).unwrap_or_default()
     }
@@ -237,7 +237,7 @@ fn tightening(parts: &Parts, index: usize, statics: &[Statics]) -> Tightening {
     // Bushes on smaller circles have the pitch of a worn chain: free rollers ride up the flanks, and a length does not tell how
     // tight that is. What a frame that has grown adds to the pretension is known from the lumped chain alone.
     let free = model.free_roller().is_some() && at == PretensionAt::MeanPhase;
-    let as_lumped = carried(statics, hard::links_of(&parts.chains, index))
+    let as_lumped = carried(statics, rigid_links::links_of(&parts.chains, index))
         .filter(|_| free || layout.growth() != 0.0)
         .map(|tension| (tension, PretensionAt::Phase));
     let (pretension, at) = as_lumped.unwrap_or((layout.pretension(), at));
@@ -278,19 +278,20 @@ impl Drive {
     }
 
     fn assemble_as_is(&self) -> Result<Assembled, AssemblyError> {
-        let (laid, fittings) = lay::lay(self)?;
+        let (laid, fittings) = layout::lay(self)?;
         cuts_into_teeth(&laid).map_or(Ok(()), Err)?;
         let (mut system, mut q) = System::build(&laid)?;
         let layouts: Vec<&Layout> = self.chains.iter().map(|placed| &placed.layout).collect();
         let begin = system.begin;
-        let mut speeds = setting_off::speeds(&system, &layouts, |motion| motion.at(begin).rate);
+        let mut speeds =
+            start_velocities::speeds(&system, &layouts, |motion| motion.at(begin).rate);
         let trains = free_trains::free_trains(&system, &laid.parts, &q, &speeds)?;
         let (torques, moving) = free_trains::balance(&mut system, &trains, &q);
         let mut statics = Vec::new();
         if self.settle {
             overload::check(&system, &laid.parts, (&q, &torques))?;
             free_trains::hold(&mut system, &moving, &q);
-            let settled = relax::settle(&mut system, &mut q);
+            let settled = newton::settle(&mut system, &mut q);
             free_trains::let_go(&mut system, &moving);
             statics = settled
                 .map_err(|error| laid_through_a_guide(&laid).unwrap_or(error))
@@ -301,7 +302,7 @@ impl Drive {
                 speeds[*shaft] = Some(ratio * train.speed);
             }
         }
-        let mut v = setting_off::set_off(&system, &layouts, &speeds, &q);
+        let mut v = start_velocities::set_off(&system, &layouts, &speeds, &q);
         free_trains::hold(&mut system, &moving, &q);
         self.put_in_place(&mut system, &laid.parts, &statics, [&mut q, &mut v])?;
         free_trains::let_go(&mut system, &moving);
@@ -333,7 +334,7 @@ impl Drive {
     ) -> Result<(), AssemblyError> {
         let mut replaced = false;
         for (index, placed) in parts.chains.iter().enumerate() {
-            let laid = LaidAs {
+            let laid = ChainAsLaid {
                 chain: &placed.chain,
                 pretension: placed.layout.pretension(),
                 on_route: matches!(placed.layout, Layout::Route { .. }),
@@ -358,7 +359,7 @@ impl Drive {
                     problem: "a chain whose pins have play settles beside chains of rigid links only; start with `settle = false`, or make all chains of rigid links".into(),
                 });
             }
-            settle::settle(system, q, &tightenings)?;
+            pseudo_transient::settle(system, q, &tightenings)?;
         }
         system.close_in_motion(q, v);
         Ok(())
@@ -369,7 +370,7 @@ impl Drive {
     /// # Errors
     /// [`AssemblyError`] when a chain does not close.
     pub fn layouts(&self) -> Result<Vec<RollerLayout>, AssemblyError> {
-        let (laid, fittings) = lay::lay(self)?;
+        let (laid, fittings) = layout::lay(self)?;
         let chains = laid.chains.into_iter().zip(fittings);
         let layouts = chains.map(|(chain, fitting)| RollerLayout {
             positions: chain.positions,
@@ -386,8 +387,8 @@ impl Drive {
     /// # Errors
     /// [`AssemblyError`] when a chain does not close, or nothing has this name.
     pub fn profile(&self, name: &str) -> Result<ArcSpline, AssemblyError> {
-        let (laid, _) = lay::lay(self)?;
-        Standing::laid(&laid).profile(&laid.parts, name)
+        let (laid, _) = layout::lay(self)?;
+        BodyPositions::laid(&laid).profile(&laid.parts, name)
     }
 }
 
@@ -400,8 +401,8 @@ impl Assembled {
         self.standing()?.profile(&self.parts, name)
     }
 
-    fn standing(&self) -> Result<Standing, AssemblyError> {
-        Ok(Standing::of(&self.system, &self.parts, self.start())?)
+    fn standing(&self) -> Result<BodyPositions, AssemblyError> {
+        Ok(BodyPositions::of(&self.system, &self.parts, self.start())?)
     }
 
     fn start(&self) -> Moment<'_> {
@@ -413,7 +414,7 @@ impl Assembled {
         }
     }
 
-    /// What may be in each other's way when the run begins.
+    /// Overlaps of bodies at the start that may be meant.
     ///
     /// # Errors
     /// What is.
@@ -434,15 +435,15 @@ impl Assembled {
 }
 
 /// Guides that cut into teeth wherever the chains settle, as neither moves.
-fn cuts_into_teeth(laid: &Laid) -> Option<AssemblyError> {
-    let clashes = fixed_in_teeth(&laid.parts, &Standing::laid(laid));
+fn cuts_into_teeth(laid: &LaidDrive) -> Option<AssemblyError> {
+    let clashes = fixed_in_teeth(&laid.parts, &BodyPositions::laid(laid));
     (!clashes.is_empty()).then_some(AssemblyError::Clash { clashes })
 }
 
-/// What keeps a chain from settling, where it was laid through a guide.
-fn laid_through_a_guide(laid: &Laid) -> Option<AssemblyError> {
+/// The error of a chain laid through a guide, which cannot settle.
+fn laid_through_a_guide(laid: &LaidDrive) -> Option<AssemblyError> {
     let rollers: Vec<_> = laid.chains.iter().map(|c| c.positions.clone()).collect();
-    let mut clashes = clashes(&laid.parts, &Standing::laid(laid), &rollers);
+    let mut clashes = clashes(&laid.parts, &BodyPositions::laid(laid), &rollers);
     clashes.retain(|clash| matches!(clash, Clash::Chain { .. }));
     (!clashes.is_empty()).then_some(AssemblyError::Clash { clashes })
 }

@@ -13,7 +13,7 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Moment, Weights};
 
 pub(crate) use anchor::Anchor;
-pub(crate) use contacts::{BodyContacts, OnRail, OnWheel, RailContact};
+pub(crate) use contacts::{BodyContacts, GuideContacts, RailContact, WheelContacts};
 pub(crate) use group::GroupBodies;
 pub use inputs::Input;
 pub(crate) use inputs::Inputs;
@@ -36,7 +36,7 @@ pub(crate) struct Bodies {
     pub(crate) shafts: Vec<Shaft>,
     pub(crate) couplings: Vec<Coupling>,
     pub(crate) gravity: Vector,
-    /// Where their coordinates begin in the state, behind those of all chains.
+    /// Index of their first coordinate in the state, after those of all chains.
     pub(crate) first: usize,
     /// Number of first-order states.
     pub(crate) states: usize,
@@ -63,7 +63,7 @@ pub(crate) struct Wheel {
     /// Its own inertia \[kg m²\].
     pub(crate) inertia: f64,
     pub(crate) mass: f64,
-    /// How easily a force at the teeth moves its rim \[1/kg\]: R²/J of a free shaft, 1/m of a free centre.
+    /// Mobility of the rim under a force at the teeth \[1/kg\]: R²/J of a free shaft, 1/m of a free centre.
     pub(crate) mobility: f64,
     pub(crate) teeth: u32,
     pub(crate) pitch_radius: f64,
@@ -98,7 +98,7 @@ pub(crate) enum WheelSupport {
 pub(crate) struct Rail {
     pub(crate) name: String,
     pub(crate) support: RailSupport,
-    /// How easily a force on its face moves it \[1/kg\], at most.
+    /// Largest mobility of its face \[1/kg\].
     pub(crate) mobility: f64,
 }
 
@@ -395,7 +395,7 @@ impl Wheel {
 }
 
 impl Bodies {
-    /// How easily a force at the teeth moves the rim of a wheel.
+    /// Mobility of the rim of a wheel under a force at the teeth.
     fn mobility(&self, wheel: &Wheel) -> f64 {
         let turning = match wheel.turn.turned_by() {
             // Rim and coordinate differ by the ratio.

@@ -5,28 +5,28 @@
 //! is, how it is laid. Coordinates are counted from the chain's own first one, and states come as the chain's own part. A chain may
 //! look at the bodies that it touches, never at the system. Nobody outside this folder asks which member it is.
 
+mod as_laid;
 pub(crate) mod chain;
-mod held_end;
 mod kernel;
-mod laid;
 pub(crate) mod links;
 mod makeup;
 pub(crate) mod model;
 pub(crate) mod particles;
 pub(crate) mod points;
 mod series;
+mod strand_ends;
 pub(crate) mod strands;
 
 use std::ops::Range;
 
-use chaindrive_contact::Prepared;
+use chaindrive_contact::PreparedLaw;
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Moment, Registers, Weights};
 use serde::{Deserialize, Serialize};
 
-pub(crate) use laid::LaidAs;
+pub(crate) use as_laid::ChainAsLaid;
 use links::Linkage;
-pub use links::inside::{Contact, Inside, Joints};
+pub use links::test_access::{Contact, Inside, Joints};
 use makeup::{Makeup, Statics};
 use model::ChainModel;
 use particles::Particles;
@@ -36,7 +36,7 @@ use strands::Strands;
 
 use crate::MemoryError;
 use crate::bodies::{BodyContacts, GroupBodies, Surroundings};
-use crate::contact::{Begun, ContactState, Frame, PlateContact, Touch, Wrench};
+use crate::contact::{ContactState, Frame, Onsets, PlateContact, Touch, Wrench};
 use crate::energy::Energy;
 use crate::joints::{self, JointFindings, JointMemory, Stick};
 use crate::seam::{Load, Loads, Moving, Observation, Pose, Rates, Sum, Unknown};
@@ -89,12 +89,12 @@ impl Record {
         }
     }
 
-    /// What was found in joints that can have contacts: those of links and of points.
+    /// Contacts found in the joints of links and of points.
     fn findings(&self) -> [&JointFindings; 2] {
         [&self.links.joints, &self.points.joints]
     }
 
-    /// How contacts began: depth \[m\], and the share of the step after which they did.
+    /// Onsets of contacts: depth \[m\], and the share of the step after which each began.
     pub(crate) fn onsets(&self) -> impl Iterator<Item = (f64, f64)> {
         let Loads {
             wheel_wrenches,
@@ -109,7 +109,7 @@ impl Record {
     }
 
     /// Contacts that began in the joints, and their depths: pins in bushes, bushes in rollers.
-    pub(crate) fn joints(&self) -> [(Begun, f64); 2] {
+    pub(crate) fn joints(&self) -> [(Onsets, f64); 2] {
         // A chain has links or points.
         let [links, points] = self.findings().map(|it| &it.tallies);
         [0, 1].map(|k| {
@@ -162,7 +162,7 @@ macro_rules! hand_on_with_record {
     };
 }
 
-/// How it comes to be.
+/// Construction.
 impl Chain {
     /// A chain as it is laid and settled, and its coordinates: of particles, or of strands, whose joints are particles too.
     pub(crate) fn laid(chain: &crate::Chain, places: &[Point]) -> (Self, Vec<f64>) {
@@ -179,13 +179,13 @@ impl Chain {
         (laid, q)
     }
 
-    /// What a chain is made of, in the place of the particles that it was laid as; `at` is the whole state, with the particles at
-    /// `entries`. None where it is made of particles.
+    /// The chain of its own model, in place of the particles that it was laid as; `at` is the whole state, with the particles at `entries`.
+    /// None for a chain of particles.
     pub(crate) fn put_in_place(
         &self,
         entries: Range<usize>,
         bodies: GroupBodies<'_>,
-        laid: &LaidAs<'_>,
+        laid: &ChainAsLaid<'_>,
         at: Moment<'_>,
     ) -> Option<(Self, [Vec<f64>; 2])> {
         let Self::Particles(particles) = self else {
@@ -272,7 +272,7 @@ impl Chain {
         self.series_mut().registers = registers;
     }
 
-    /// How a pin stands to its bush, and a bush to its roller, where they have play.
+    /// Contacts of a joint with clearance: pin in bush, and bush in roller.
     pub(crate) fn contacts_of(&self, joint: usize) -> [Option<ContactState>; 2] {
         let JointMemory { pins, bushes, .. } = &self.series().memory;
         [pins, bushes].map(|memory| (memory.len() > 0).then(|| memory.at(joint)))
@@ -302,7 +302,7 @@ impl Chain {
         fn name(&self, coordinate: usize) -> String;
         fn inertias(&self) -> Vec<f64>;
         fn joints(&self) -> usize;
-        fn bearing_laws(&self) -> [Option<Prepared>; 2];
+        fn bearing_laws(&self) -> [Option<PreparedLaw>; 2];
         fn has_springs(&self) -> bool;
         fn strands(&self) -> usize;
         fn elongation(&self) -> f64;
@@ -319,7 +319,7 @@ impl Chain {
     }
 }
 
-/// How it moves.
+/// Motion.
 impl Chain {
     hand_on! {
         fn set_off(&self, places: &[Point], velocities: &[Vector], v: &mut [f64]);
@@ -330,7 +330,7 @@ impl Chain {
         fn has_reactions(&self) -> bool;
     }
 
-    /// Where the rollers are.
+    /// Pose of the rollers.
     pub(crate) fn pose<'a>(&self, at: Moment<'a>, record: &'a mut Record) -> Pose<'a> {
         ask!(self, record, (chain, work) => chain.pose(at, work))
     }
@@ -405,7 +405,7 @@ impl Chain {
         }
     }
 
-    /// x ← (M + c C + k K)⁻¹ M x over the chain and, behind it, the bodies of its group.
+    /// x ← (M + c C + k K)⁻¹ M x over the chain and, after it, the bodies of its group.
     pub(crate) fn solve(
         &self,
         bodies: GroupBodies<'_>,
@@ -442,7 +442,7 @@ impl Chain {
         ask!(self, record, (chain, work) => chain.energies(at, gravity, work, out));
     }
 
-    /// What the contacts of link plates with a guide store \[J\].
+    /// Energy stored in the contacts of link plates with a guide \[J\].
     pub(crate) fn plate_energy(
         &self,
         at: Moment<'_>,
@@ -454,7 +454,7 @@ impl Chain {
     }
 }
 
-/// How it is settled.
+/// Statics.
 impl Chain {
     hand_on! {
         fn unknowns(&self) -> Vec<Unknown>;

@@ -5,29 +5,29 @@
 //! such slot the contact remembers, since the last accepted state, the gap, the closing speed
 //! and, while closed, the inverse of the speed at touch.
 
-mod ahead;
 mod arrivals;
-mod bearing;
+mod bore;
 mod bristles;
+mod faced_surface;
 mod film;
 mod friction;
-mod holding;
 mod impacts;
 mod journal;
 mod kernel;
 mod law;
 mod logarithm;
-mod look;
 mod memory;
 mod plates;
-mod rest;
+mod power_on_spring;
+mod predicted;
+mod resting_lanes;
 mod rollers;
 mod rubbing;
+mod slot_differences;
 mod slots;
-mod stacked;
+mod stick_slip;
 #[cfg(test)]
 mod tests;
-mod uneven;
 mod window;
 mod windows;
 mod wrench;
@@ -39,20 +39,22 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use arrivals::Arrivals;
 pub use arrivals::Impact;
-pub(crate) use bearing::{Apart, Bearing, CENTRED, Grip, Tally};
+pub(crate) use bore::{BoreContact, CENTRED, Grip, RelativeMotion, Tally};
 pub(crate) use bristles::{Sweep, swept};
 pub(crate) use friction::LaneFriction;
-pub(crate) use holding::Holding;
 pub use impacts::Impacts;
 pub(crate) use law::SurfaceLaw;
-pub(crate) use memory::{ContactMemory, ContactState, FAR, Kept, MemoryLanes, share_to_zero};
-pub(crate) use plates::{Drawn, OfPins, PlateContact, PlatePins, pressing};
+pub(crate) use memory::{
+    ContactMemory, ContactState, FAR, MemoryField, MemoryLanes, share_to_zero,
+};
+pub(crate) use plates::{OfPins, PinAccelerations, PlateContact, PlatePins, pressing};
 pub(crate) use rollers::Rollers;
+pub(crate) use stick_slip::Holding;
 pub(crate) use window::{Places, Run, Spare};
 pub(crate) use windows::{PlateMemory, Windows};
-pub(crate) use wrench::{Begun, LaneTally, Wrench};
+pub(crate) use wrench::{LaneTally, Onsets, Wrench};
 
-use uneven::Uneven;
+use slot_differences::SlotDifferences;
 
 use crate::profile::{GapFace, RailFace};
 use crate::surface::{Flank, Surface};
@@ -83,7 +85,7 @@ pub(crate) enum Shape {
     /// The face of a guide, given about the frame's reference origin.
     Rail {
         face: RailFace,
-        /// Where the frame's origin lies in the face's own coordinates.
+        /// Origin of the frame in the coordinates of the face.
         reference: Point,
         /// Box around the face in its own coordinates (low, high).
         bounds: [Point; 2],
@@ -121,7 +123,7 @@ pub(crate) struct Contacts {
     /// The same of the largest of them \[m\].
     largest: f64,
     /// Differences between them, and between gaps.
-    uneven: Option<Box<Uneven>>,
+    uneven: Option<Box<SlotDifferences>>,
     /// Runs of rollers that can touch.
     pub(crate) runs: Vec<Run>,
     /// Number of rollers in them.
@@ -136,7 +138,7 @@ pub(crate) struct Contacts {
     /// When that was \[s\].
     pub(crate) accepted: f64,
     /// Whether the chain reads the faces that its circles press on: rigid links for implicit steps, strands for the friction that turns
-    /// their bushes. No lane rests then: a link that is struck at its other end moves at once.
+    /// their bushes. No lane rests then, because a link that is struck at its other end moves at once.
     pub(crate) writes_faces: bool,
     spare: Option<Box<Spare>>,
 }
@@ -144,7 +146,7 @@ pub(crate) struct Contacts {
 /// The lane does not rest: it is looked at at any time, times before 0 included.
 const AWAKE: f64 = f64::NEG_INFINITY;
 
-/// Contact state per slot; where a gap has several stretches, each is a side, and the slots of one stand behind those of the
+/// Contact state per slot; where a gap has several stretches, each is a side, and the slots of one stand after those of the
 /// other.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Touch {
@@ -248,7 +250,7 @@ impl Contacts {
     /// Oil above the roughness \[m\] in a contact that presses, if there is any between the surfaces.
     pub(crate) fn film(&self, state: &ContactMemory, slot: usize) -> Option<f64> {
         let film = self.surface.film?;
-        Some(film.thickness - state.get(Kept::Squeezed, slot))
+        Some(film.thickness - state.get(MemoryField::Squeezed, slot))
     }
 
     /// Sum of the elastic energies of all closed slots \[J\].
@@ -256,7 +258,9 @@ impl Contacts {
         let law = &self.surface.law;
         let of_flank = self.flank.as_ref().map(|flank| flank.law(&self.surface));
         let state = &touch.state;
-        let contacts = state.each(Kept::Gap).zip(state.each(Kept::Share));
+        let contacts = state
+            .each(MemoryField::Gap)
+            .zip(state.each(MemoryField::Share));
         let closed = contacts.filter(|(gap, _)| *gap < 0.0);
         closed
             .map(|(gap, share)| match &of_flank {

@@ -19,7 +19,7 @@ pub struct Course {
     pub to: f64,
     /// Duration T of the ramp \[s\], zero for a jump.
     pub over: f64,
-    /// Rate r behind the ramp, in the unit of the input per second.
+    /// Rate r after the ramp, in the unit of the input per second.
     pub rate: f64,
 }
 
@@ -78,7 +78,7 @@ impl Ramp {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Path {
-    /// As it was before, on the ramp, and behind it.
+    /// As it was before, on the ramp, and after it.
     pieces: [Piece; 3],
     /// Arrival of a step at the end of the ramp. Until then the ramp goes on: the end of the step has its acceleration.
     arrived: bool,
@@ -111,9 +111,9 @@ impl Path {
     /// Position, rate and acceleration at a time \[s\].
     #[inline]
     pub(crate) fn at(&self, t: f64) -> Kinematics {
-        let [before, way, behind] = &self.pieces;
-        let piece = if self.arrived && t >= behind.since {
-            behind
+        let [before, way, after] = &self.pieces;
+        let piece = if self.arrived && t >= after.since {
+            after
         } else if t >= way.since {
             way
         } else {
@@ -133,12 +133,12 @@ impl Path {
         (!self.arrived && end > t).then_some(end)
     }
 
-    /// Goes on behind the ramp, at a time \[s\] at which a step has ended; whether it ended there.
+    /// Goes on after the ramp, at a time \[s\] at which a step has ended; whether it ended there.
     pub(crate) fn arrive(&mut self, t: f64) -> bool {
-        let behind = &mut self.pieces[2];
-        let arrives = !self.arrived && t + slack(t) >= behind.since;
+        let after = &mut self.pieces[2];
+        let arrives = !self.arrived && t + slack(t) >= after.since;
         if arrives {
-            behind.since = t;
+            after.since = t;
             self.arrived = true;
         }
         arrives
@@ -213,7 +213,7 @@ impl Path {
         since: f64,
         (from, jerk): (Kinematics, f64),
         over: f64,
-        behind: impl FnOnce(Kinematics) -> (Kinematics, f64),
+        after: impl FnOnce(Kinematics) -> (Kinematics, f64),
     ) -> Self {
         let before = Piece {
             since,
@@ -222,14 +222,14 @@ impl Path {
         };
         let way = Piece { since, from, jerk };
         let end = since + over;
-        let (there, jerk) = behind(way.at(end));
-        let behind = Piece {
+        let (there, jerk) = after(way.at(end));
+        let after = Piece {
             since: end,
             from: there,
             jerk,
         };
         Self {
-            pieces: [before, way, behind],
+            pieces: [before, way, after],
             arrived: over <= 0.0,
         }
     }

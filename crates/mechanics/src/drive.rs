@@ -210,7 +210,7 @@ pub enum Stop {
     Guide(usize),
 }
 
-/// Where the chain lies when the run begins.
+/// Layout of the chain at the start of the run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Layout {
     /// Taut around sprockets and curved guides.
@@ -269,7 +269,7 @@ pub enum SpanStart {
     Polygon,
 }
 
-/// How a closed chain is fitted to its sprockets.
+/// Fit of a closed chain to its sprockets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
     /// The body that is moved until the links close without stress.

@@ -207,7 +207,7 @@ impl Flow {
         self.place().is_some()
     }
 
-    /// Where energy is lost; none for what comes in or goes out.
+    /// Place at which energy is lost; none for what comes in or goes out.
     pub fn place(self) -> Option<Place> {
         match self {
             Self::JointLoss | Self::ArticulationLoss => Some(Place::Joints),

@@ -82,7 +82,7 @@ impl DriveError {
         }
     }
 
-    /// Puts a path within `chain` or `route` behind that of one of several chains.
+    /// Puts a path within `chain` or `route` after that of one of several chains.
     pub(crate) fn place_in(&mut self, whole: &str) {
         match self {
             Self::Parameter { path, .. }
@@ -151,7 +151,7 @@ impl MemoryError {
     }
 }
 
-/// What a sprocket asks of its chain, with all that turns with it.
+/// Pull that a sprocket asks of its chain, with all that turns with it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pull {
     /// Name of the sprocket.

@@ -226,7 +226,7 @@ impl Group {
     }
 }
 
-/// What belongs to the parts of groups, in the order of the drive.
+/// Values of the parts of groups, in the order of the drive.
 pub(crate) fn in_order<'g, T>(of_groups: impl Iterator<Item = (&'g Vec<usize>, Vec<T>)>) -> Vec<T> {
     let mut all: Vec<(usize, T)> = of_groups
         .flat_map(|(indices, values)| indices.iter().copied().zip(values))

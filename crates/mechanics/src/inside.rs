@@ -3,7 +3,7 @@
 use chaindrive_integrate::Moment;
 
 pub use crate::chains::{Contact, Inside, Joints};
-use crate::contact::Kept;
+use crate::contact::MemoryField;
 use crate::system::{Record, System};
 
 /// The first chain of a drive, of rigid links, with the state that a record is of.
@@ -49,10 +49,10 @@ pub fn teeth(system: &System, record: &Record, at: Moment<'_>) -> Vec<Tooth> {
             };
             let kept = |what| touch.state.get(what, slot);
             found.push(Tooth {
-                gaps: [kept(Kept::Gap), probe.gap],
-                closing: kept(Kept::Closing),
-                inverse_onset: kept(Kept::InverseOnset),
-                force: kept(Kept::Force),
+                gaps: [kept(MemoryField::Gap), probe.gap],
+                closing: kept(MemoryField::Closing),
+                inverse_onset: kept(MemoryField::InverseOnset),
+                force: kept(MemoryField::Force),
                 share: flank.share(probe.beyond),
             });
         });

@@ -166,7 +166,7 @@ impl<S: Simd> Lane<S> {
         whole[0] = self.v;
     }
 
-    /// The numbers, and zeros behind them.
+    /// The numbers, and zeros after them.
     #[inline(always)]
     pub(crate) fn numbers(self) -> [f64; LANES] {
         let mut numbers = [0.0; LANES];

@@ -105,6 +105,8 @@ mod applied;
 mod articulation;
 mod assembly;
 mod bodies;
+mod body_impacts;
+mod body_positions;
 mod chains;
 mod check;
 mod contact;
@@ -115,7 +117,6 @@ mod drive;
 mod energy;
 mod error;
 mod events;
-mod fights;
 mod forcing;
 mod groups;
 #[doc(hidden)]
@@ -125,29 +126,29 @@ mod kinematics;
 mod lanes;
 mod modes;
 mod motion;
-mod nudge;
+mod motion_conflicts;
 mod observe;
 mod order;
 mod pose;
 mod profile;
 mod seam;
 mod shaft_loss;
-mod stack;
-mod standing;
 mod strength;
-mod struck;
 mod surface;
 mod system;
 mod tensioner;
 mod tolerance;
+mod tooth_stack;
 mod torque;
 mod trains;
+mod twin_start;
 mod warming;
 
 pub use alignment::Alignment;
 pub use articulation::{Articulation, LateralRub};
 pub use assembly::{Assembled, Fitting, FreeTrain, Gap, RollerLayout, Statics};
 pub use bodies::Input;
+pub use body_impacts::BodyImpacts;
 pub use chains::chain::{Chain, End, Ends};
 pub use chains::model::*;
 pub use contact::{Impact, Impacts};
@@ -160,11 +161,11 @@ pub use drive::{
 };
 pub use energy::{Energy, Flow, Place, Store};
 pub use error::{AssemblyError, Clash, DriveError, MemoryError, Pull};
-pub use fights::Fight;
 pub use joints::{Clearance, FreeRoller};
 pub use kinematics::Kinematics;
 pub use modes::{Mode, Modes};
 pub use motion::{Harmonic, Motion, Table};
+pub use motion_conflicts::MotionConflict;
 pub use observe::{ChainSize, Sights};
 pub use order::Order;
 pub use pose::{
@@ -172,16 +173,15 @@ pub use pose::{
 };
 pub use seam::{ContactEvent, ContactPair, EventKinds, Observation};
 pub use shaft_loss::{Bearing, BearingFeed, Series, ShaftDrag, ShaftLoss, SkfBearing};
-pub use stack::{
-    Beam, BeamEnds, JointMasses, StackTerm, StrikingMass, ToothStack, dry_blow, rim_compliance,
-    wall_compliance,
-};
-pub use strength::{Capacity, PowerLimits, Strength, Unrated};
-pub use struck::Struck;
+pub use strength::{Capacity, MissingRating, PowerLimits, Strength};
 pub use surface::{Flank, Surface};
 pub use system::{Record, System, SystemMemory};
 pub use tensioner::{Carrier, Push, PushForce, Tensioner, carriers, pushes};
 pub use tolerance::Tolerance;
+pub use tooth_stack::{
+    Beam, BeamEnds, JointMasses, StackTerm, StrikingMass, ToothStack, dry_blow, rim_compliance,
+    wall_compliance,
+};
 pub use torque::{Argument, Torque};
 pub use warming::warming;
 

@@ -4,14 +4,14 @@ use chaindrive_geometry::Point;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 
 use crate::applied::{LISTS, blended};
-use crate::bodies::{OnWheel, RailContact, WheelSupport};
-use crate::contact::Kept;
+use crate::bodies::{RailContact, WheelContacts, WheelSupport};
+use crate::contact::MemoryField;
 use crate::energy::{Energy, Flow, Store};
 use crate::seam::Observation;
 use crate::system::{Member, Reading, Record, System};
-use crate::tensioner::Reduced;
+use crate::tensioner::ReducedInertia;
 
-/// How much there is of a chain.
+/// Size of a chain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ChainSize {
     /// Rollers.
@@ -271,7 +271,7 @@ impl System {
                 let slots = on.contacts.slots;
                 on.contacts.for_each_slot(|slot, roller| {
                     for side in 0..on.contacts.sides() {
-                        let force = touch.state.get(Kept::Force, side * slots + slot);
+                        let force = touch.state.get(MemoryField::Force, side * slots + slot);
                         out.contact_force[first + roller] += force;
                     }
                 });
@@ -364,7 +364,7 @@ impl System {
                 let slots = on.contacts.slots;
                 on.contacts.for_each_slot(|slot, roller| {
                     for slot in (0..on.contacts.sides()).map(|side| side * slots + slot) {
-                        if touch.state.get(Kept::Gap, slot) < 0.0 {
+                        if touch.state.get(MemoryField::Gap, slot) < 0.0 {
                             out.contacts[on.wheel] += 1.0;
                             if let Some(film) = on.contacts.film(&touch.state, slot) {
                                 let thinnest = &mut out.film_thickness[first + roller];
@@ -421,7 +421,7 @@ impl System {
     fn seated(
         &self,
         member: &Member,
-        on: &OnWheel,
+        on: &WheelContacts,
         first_roller: usize,
         seated: &mut Vec<usize>,
         out: &Observation,
@@ -441,7 +441,7 @@ impl System {
         on.contacts.for_each_slot(|_, roller| seated.push(roller));
         seated.sort_unstable();
         seated.retain(on_circle);
-        // The wrap begins behind the widest stretch of rollers that are elsewhere.
+        // The wrap begins after the widest stretch of rollers that are elsewhere.
         let count = seated.len();
         (0..count)
             .map(|k| {
@@ -551,7 +551,7 @@ impl System {
         }
         for slide in &bodies.slides {
             let pose = slide.pose(at.q, at.v);
-            let Reduced { inertia, .. } = slide.reduced(pose);
+            let ReducedInertia { inertia, .. } = slide.reduced(pose);
             add(Store::Carriers, 0.5 * inertia * pose.rate * pose.rate);
             add(Store::Tensioners, slide.stored(pose, at.z));
             if slide.dof.is_some() {

@@ -1,4 +1,4 @@
-//! What repeats with the turns of a shaft.
+//! Periods that repeat with the turns of a shaft.
 
 use crate::DriveError;
 

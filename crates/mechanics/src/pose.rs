@@ -6,7 +6,7 @@
 
 mod backing;
 mod bodies;
-mod carried;
+mod carried_bodies;
 mod chains;
 mod places;
 mod plate;
@@ -17,15 +17,15 @@ use chaindrive_integrate::{Moment, SecondOrderSystem};
 pub use chains::{FigureChain, PlateShape};
 pub use places::{Instant, MissingChannel};
 
+use crate::body_positions::BodyPositions;
 use crate::check::clash::clashes;
 use crate::drive::{Parts, Touches};
-use crate::standing::Standing;
 use crate::{Assembled, AssemblyError, Clash, Drive, Flow, Gap, Observation};
 
 /// All of a drive that does not change while it moves.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    /// Sprockets, guides, tensioners, in this order, each kind in the order of the drive; behind an arm stands its plunger.
+    /// Sprockets, guides, tensioners, in this order, each kind in the order of the drive; an arm is followed by its plunger.
     pub bodies: Vec<Body>,
     /// The chains.
     pub chains: Vec<FigureChain>,
@@ -43,7 +43,7 @@ pub struct Figure {
     start: Start,
 }
 
-/// Where everything stands at the start.
+/// Positions at the start.
 #[derive(Clone, Debug)]
 struct Start {
     /// Bodies, as a run would show them.
@@ -83,7 +83,7 @@ pub enum BodyKind {
         /// Part of the chain that touches it.
         touches: Touches,
     },
-    /// What a tensioner carries sprockets and guides with; where it turns, its frame has the pivot as origin.
+    /// Carrier of sprockets and guides of a tensioner; where it turns, its frame has the pivot as origin.
     Carrier {
         /// Its kind in one word.
         name: &'static str,
@@ -184,7 +184,7 @@ impl Drive {
         };
         let chains = laid.chains.iter();
         let rollers: Vec<_> = chains.map(|chain| chain.positions.clone()).collect();
-        let found = clashes(parts, &Standing::laid(&laid), &rollers);
+        let found = clashes(parts, &BodyPositions::laid(&laid), &rollers);
         let start = Start { seen, rollers };
         let mut figure = Figure::new(parts, laid.gap_angles.clone(), start)?;
         for (chain, places) in figure.chains.iter_mut().zip(&figure.start.rollers) {

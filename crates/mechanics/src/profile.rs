@@ -52,7 +52,7 @@ pub(crate) struct Profile {
     pub(crate) has_straights: bool,
     /// Whether the surface bulges everywhere and turns outward at every joint: convex.
     pub(crate) bulges: bool,
-    /// First feature behind a hollow that is not hollow itself: where the flank begins.
+    /// First feature after a hollow that is not hollow itself: where the flank begins.
     pub(crate) flank: Option<usize>,
     /// Where every reach ends, of rows that are looked up; empty for short ones.
     reaches: Box<[usize]>,
@@ -84,7 +84,7 @@ pub(crate) struct Nearest<S: Simd> {
 
 /// The features that the circles of a lane belong to.
 #[derive(Clone, Copy)]
-struct Chosen<S: Simd> {
+struct LaneFeatures<S: Simd> {
     centre: [Lane<S>; 2],
     radius: Lane<S>,
     sign: Lane<S>,
@@ -189,11 +189,11 @@ impl Profile {
         &self,
         w: Wide<S>,
         [x, y]: [Lane<S>; 2],
-        chosen: Chosen<S>,
+        chosen: LaneFeatures<S>,
         radius: f64,
     ) -> Nearest<S> {
         let zero = w.splat(0.0);
-        let Chosen {
+        let LaneFeatures {
             centre: [cx, cy],
             radius: r,
             sign,
@@ -219,7 +219,7 @@ impl Profile {
 
     /// The last features whose starting lines circles at (x, y) have passed, one line after the other.
     #[inline(always)]
-    fn passed<S: Simd>(&self, w: Wide<S>, at: [Lane<S>; 2]) -> Chosen<S> {
+    fn passed<S: Simd>(&self, w: Wide<S>, at: [Lane<S>; 2]) -> LaneFeatures<S> {
         let zero = w.splat(0.0);
         let first = &self.features[0];
         let mut cx = w.splat(first.centre.x);
@@ -244,7 +244,7 @@ impl Profile {
                 my = passed.select(w.splat(f.straight.y), my);
             }
         }
-        Chosen {
+        LaneFeatures {
             centre: [cx, cy],
             radius: r,
             sign,
@@ -252,7 +252,7 @@ impl Profile {
         }
     }
 
-    /// How far beyond the end of the hollow places are \[m\], negative in the hollow; without one, beyond any measure.
+    /// Distance of places beyond the end of the hollow \[m\], negative in the hollow; without a hollow, beyond any measure.
     #[inline(always)]
     pub(crate) fn beyond_hollow<S: Simd>(&self, w: Wide<S>, at: [Lane<S>; 2]) -> Lane<S> {
         match self.flank {

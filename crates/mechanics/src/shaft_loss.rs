@@ -286,9 +286,9 @@ impl ShaftDrag {
     }
 }
 
-/// What a loss does to its shaft.
+/// Torque and damping of a loss on its shaft.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Resisting {
+pub(crate) struct LossTorque {
     /// Torques of the bearings, and of oil and air \[N m\], against the rotation.
     pub(crate) torques: [f64; 2],
     /// Damping of both \[N m s\].
@@ -302,10 +302,10 @@ impl ShaftLoss {
     }
 
     /// Torques under a radial force \[N\] at a speed \[rad/s\].
-    pub(crate) fn act(&self, force: f64, speed: f64) -> Resisting {
+    pub(crate) fn act(&self, force: f64, speed: f64) -> LossTorque {
         let [bearing, sticky] = self.bearing.map_or([0.0; 2], |it| it.act(force, speed));
         let [drag, viscous] = self.drag.map_or([0.0; 2], |it| it.act(speed));
-        Resisting {
+        LossTorque {
             torques: [bearing, drag],
             damping: sticky + viscous,
         }

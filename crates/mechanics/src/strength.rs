@@ -18,7 +18,7 @@ pub struct Strength {
     pub strands: u32,
     /// Service factor \[–\], positive: by how much the duty is harder than a smooth load.
     pub service_factor: f64,
-    /// What its power is limited by.
+    /// Limit of its power.
     pub capacity: Capacity,
 }
 
@@ -34,7 +34,7 @@ impl Default for Strength {
     }
 }
 
-/// What the power of a chain is limited by.
+/// Limit of the power of a chain.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Capacity {
     /// By the formula for the chains of ASME B29.1.
@@ -42,18 +42,18 @@ pub enum Capacity {
     /// By what its maker says \[W\], positive, all strands together.
     Given(f64),
     /// Nobody knows.
-    Unknown(Unrated),
+    Unknown(MissingRating),
 }
 
 impl Default for Capacity {
     fn default() -> Self {
-        Self::Unknown(Unrated::NoType)
+        Self::Unknown(MissingRating::NoType)
     }
 }
 
 /// Why a chain has no rated power.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Unrated {
+pub enum MissingRating {
     /// The chain is none of the catalogue.
     NoType,
     /// The pitch is not that of its type.
@@ -65,7 +65,7 @@ pub enum Unrated {
     },
 }
 
-impl fmt::Display for Unrated {
+impl fmt::Display for MissingRating {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::NoType => "no rating: the chain has no type of the catalogue",

@@ -4,7 +4,7 @@ use chaindrive_contact::{Elastic, Film, Friction, Law};
 
 use crate::DriveError;
 
-/// How two surfaces push and rub on each other.
+/// Contact of two surfaces: normal force, friction and film.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// Normal force law.

@@ -4,13 +4,13 @@
 //! q = [ coordinates of the first chain | of the next ones | tensioners, shafts, sprocket centres ]
 //! ```
 
-mod beside;
 mod build;
 mod group;
+mod independent_systems;
 mod inputs;
 mod member;
 mod memory;
-mod sideways;
+mod offset_spans;
 mod solve;
 
 use chaindrive_geometry::Point;
@@ -23,13 +23,13 @@ use serde::{Deserialize, Serialize};
 use crate::AssemblyError;
 use crate::applied;
 use crate::bodies::Bodies;
-use crate::chains::{self, Chain, LaidAs};
+use crate::chains::{self, Chain, ChainAsLaid};
 use crate::contact::Wrench;
 use crate::energy::Flow;
 use crate::seam::{EventLog, Rates};
 use crate::tensioner::Slopes;
 
-pub(crate) use build::{Laid, LaidChain};
+pub(crate) use build::{LaidChain, LaidDrive};
 pub(crate) use group::Group;
 pub(crate) use member::Member;
 pub use memory::SystemMemory;
@@ -40,7 +40,7 @@ pub struct System {
     pub(crate) chains: Vec<Member>,
     pub(crate) bodies: Bodies,
     pub(crate) dofs: usize,
-    /// What nothing joins with the rest.
+    /// Groups of parts that nothing joins with each other.
     pub(crate) groups: Vec<Group>,
     /// The log of contacts, where one is kept.
     pub(crate) events: Option<EventLog>,
@@ -277,7 +277,7 @@ impl System {
     pub(crate) fn put_in_place(
         &mut self,
         index: usize,
-        laid: &LaidAs<'_>,
+        laid: &ChainAsLaid<'_>,
         [q, v]: [&mut Vec<f64>; 2],
     ) -> bool {
         let member = &self.chains[index];

@@ -4,7 +4,7 @@ pub mod carriers;
 pub mod pushes;
 
 pub use carriers::Carrier;
-pub(crate) use carriers::{Extension, Reduced, Weight};
+pub(crate) use carriers::{Extension, ReducedInertia, Weight};
 pub(crate) use pushes::Slopes;
 pub use pushes::{Push, PushForce};
 

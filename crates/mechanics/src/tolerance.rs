@@ -39,7 +39,7 @@ impl Tolerance {
         displacements.map(|it| it / pitch_radius).collect()
     }
 
-    /// Whether the sprocket is as drawn.
+    /// Whether the sprocket has no errors.
     pub fn is_none(&self) -> bool {
         self.eccentricity <= 0.0 && self.gap_displacements.iter().all(|it| it.abs() <= 0.0)
     }

@@ -3,9 +3,9 @@
 use crate::drive::{Parts, Rotation};
 use crate::groups::Sets;
 
-/// How a shaft turns with the one that leads its train; a shaft without gears leads itself.
+/// Ratio of a shaft to the one that leads its train; a shaft without gears leads itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct InTrain {
+pub(crate) struct TrainMember {
     /// The shaft whose angle is given in time, or else the first one.
     pub(crate) leader: usize,
     /// θ − θ(0) of the shaft over that of the leader \[–\].
@@ -13,7 +13,7 @@ pub(crate) struct InTrain {
 }
 
 /// The place of every shaft in its train.
-pub(crate) fn trains(parts: &Parts) -> Vec<InTrain> {
+pub(crate) fn trains(parts: &Parts) -> Vec<TrainMember> {
     let count = parts.shafts.len();
     let mut sets = Sets::new(count);
     for pair in &parts.gears {
@@ -48,7 +48,7 @@ pub(crate) fn trains(parts: &Parts) -> Vec<InTrain> {
     leaders
         .into_iter()
         .zip(ratios)
-        .map(|(leader, ratio)| InTrain {
+        .map(|(leader, ratio)| TrainMember {
             leader,
             // Gears reach every shaft of a train from its leader.
             ratio: ratio.unwrap_or(1.0),
@@ -60,7 +60,7 @@ pub(crate) fn trains(parts: &Parts) -> Vec<InTrain> {
 mod tests {
     use chaindrive_geometry::Vector;
 
-    use super::{InTrain, trains};
+    use super::{TrainMember, trains};
     use crate::{GearPair, Motion, Parts, Rotation, Shaft};
 
     /// Four shafts in a row of three pairs, and one apart: i₀₃ = i₀₁ i₁₂ i₂₃, whichever of them leads.
@@ -91,7 +91,7 @@ mod tests {
         };
         let ratios = |parts: &Parts| -> Vec<(usize, f64)> {
             let all = trains(parts).into_iter();
-            all.map(|InTrain { leader, ratio }| (leader, ratio))
+            all.map(|TrainMember { leader, ratio }| (leader, ratio))
                 .collect()
         };
         assert_eq!(

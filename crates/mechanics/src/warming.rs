@@ -1,4 +1,4 @@
-//! How warm a chain runs in air.
+//! Steady temperature of a chain in air.
 
 use crate::Chain;
 

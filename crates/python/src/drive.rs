@@ -345,11 +345,11 @@ impl Drive {
 }
 
 /// A place, and what either drive has there.
-type Differing = (String, Option<String>, Option<String>);
+type DifferenceRow = (String, Option<String>, Option<String>);
 
 /// Place and values of everything in which two drives differ.
 #[pyfunction]
-pub(crate) fn diff(first: &Drive, second: &Drive) -> PyResult<Vec<Differing>> {
+pub(crate) fn diff(first: &Drive, second: &Drive) -> PyResult<Vec<DifferenceRow>> {
     let differences = scene::diff(&first.scene, &second.scene).or_raise()?;
     let told = differences
         .into_iter()

@@ -20,7 +20,7 @@ pub(crate) fn polygon_action<'py>(
     let angles = driver_angle.as_array();
     let states = angles.mapv(|angle| drive.driven(angle));
     let columns = PyDict::new(py);
-    let column = |name: &str, read: &dyn Fn(&chaindrive_geometry::Driven) -> f64| {
+    let column = |name: &str, read: &dyn Fn(&chaindrive_geometry::DrivenState) -> f64| {
         columns.set_item(name, states.map(read).into_pyarray(py))
     };
     column("driven_angle", &|state| state.angle)?;

@@ -30,7 +30,7 @@ pub(crate) struct Simulation {
 #[derive(Debug)]
 pub(crate) struct View {
     seen: Mutex<chaindrive::View>,
-    /// All entries, one channel behind the other: NumPy lends one array sooner than many.
+    /// All entries, one channel after the other: NumPy lends one array sooner than many.
     all: Py<PyArray1<f64>>,
 }
 

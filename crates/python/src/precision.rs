@@ -12,7 +12,7 @@ use crate::run::stepping;
 use crate::signals::watched;
 
 /// Method, step, tolerance and onset depth of a variant.
-type Wanted = (String, Option<f64>, Option<f64>, Option<f64>);
+type VariantArguments = (String, Option<f64>, Option<f64>, Option<f64>);
 
 /// Measures methods and steps on a drive: columns, and what belongs to all rows.
 #[pyfunction]
@@ -20,12 +20,12 @@ type Wanted = (String, Option<f64>, Option<f64>, Option<f64>);
 pub(crate) fn work_precision<'py>(
     py: Python<'py>,
     drive: &Drive,
-    variants: Vec<Wanted>,
+    variants: Vec<VariantArguments>,
     until: Option<f64>,
     repeats: usize,
     replicates: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let variant = |(method, step, tolerance, onset_depth): Wanted| {
+    let variant = |(method, step, tolerance, onset_depth): VariantArguments| {
         Ok(Variant {
             stepping: stepping(&method)?,
             step,

@@ -23,7 +23,7 @@ type Closest<'py> = (
 );
 
 /// Corners and bulges.
-type Cornered<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
+type CornersAndBulges<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
 
 /// Where two arcs meet that leave a place and arrive at another in unit directions, and their bulges; none where there are none.
 #[pyfunction]
@@ -54,7 +54,7 @@ impl Profile {
     }
 
     /// Corners (n, 2) and bulges.
-    fn bulges<'py>(&self, py: Python<'py>) -> PyResult<Cornered<'py>> {
+    fn bulges<'py>(&self, py: Python<'py>) -> PyResult<CornersAndBulges<'py>> {
         let (corners, bulges) = self.0.bulges();
         Ok((points(py, &corners)?, bulges.into_pyarray(py)))
     }

@@ -1,7 +1,7 @@
 //! Replays of recorded runs.
 
-use chaindrive::record::{LoggedContact, Recorded, RecordedChannel};
-use chaindrive_replay::{FilmError, Selection};
+use chaindrive::record::{LoggedContact, RecordedChannel, RecordedRun};
+use chaindrive_replay::{AnimationError, Selection};
 use numpy::{PyReadonlyArray1, PyReadonlyArrayDyn};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
@@ -49,7 +49,7 @@ pub(crate) fn replay<'py>(
         labels,
         values: values.as_array().iter().copied().collect(),
     };
-    let recorded = Recorded {
+    let recorded = RecordedRun {
         attributes,
         samples,
         stride,
@@ -83,7 +83,7 @@ pub(crate) fn replay_selection(
 ) -> (Vec<String>, usize) {
     let selection = Selection { frames, plots };
     let wanted = recorded.into_iter().filter(|name| selection.wants(name));
-    (wanted.collect(), Recorded::stride(samples, frames))
+    (wanted.collect(), RecordedRun::stride(samples, frames))
 }
 
 fn logged((bodies, rollers, starts, peaks): Contacts<'_>) -> Vec<LoggedContact> {
@@ -98,15 +98,15 @@ fn logged((bodies, rollers, starts, peaks): Contacts<'_>) -> Vec<LoggedContact> 
     rows.map(contact).collect()
 }
 
-fn exception(error: FilmError) -> PyErr {
+fn exception(error: AnimationError) -> PyErr {
     match error {
-        FilmError::Scene(error) => error.exception(),
-        FilmError::Assembly(error) => error.exception(),
-        FilmError::Outline(error) => error.exception(),
-        FilmError::Stopped(error) => error.exception(),
-        FilmError::NotRecorded { .. } | FilmError::UnknownPlot { .. } | FilmError::Pose(_) => {
-            PyKeyError::new_err(error.to_string())
-        }
+        AnimationError::Scene(error) => error.exception(),
+        AnimationError::Assembly(error) => error.exception(),
+        AnimationError::Outline(error) => error.exception(),
+        AnimationError::Stopped(error) => error.exception(),
+        AnimationError::NotRecorded { .. }
+        | AnimationError::UnknownPlot { .. }
+        | AnimationError::Pose(_) => PyKeyError::new_err(error.to_string()),
         error => PyValueError::new_err(error.to_string()),
     }
 }

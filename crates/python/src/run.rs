@@ -4,10 +4,10 @@ use std::borrow::Cow;
 use std::path::PathBuf;
 
 use chaindrive::channel;
-use chaindrive::record::{self, EventColumn, EventTable, Existing, InStore, Stopped};
+use chaindrive::record::{self, EventColumn, EventTable, Existing, StoppedRun, ZarrSink};
 use chaindrive::{
-    Axis, Channel, EventKinds, Given, Memory, Report, Request, Settings, Simulation, Stepping,
-    Stop, execute,
+    Axis, Channel, EventKinds, Memory, Report, Request, SettingValue, Settings, Simulation,
+    Stepping, Stop, execute,
 };
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
@@ -51,7 +51,7 @@ pub(crate) fn simulate<'py>(
                 } else {
                     Existing::Keep
                 };
-                let mut store = InStore::new(path, existing);
+                let mut store = ZarrSink::new(path, existing);
                 execute(&request, &mut store, &interpreter).map_err(IntoException::exception)
             }
         };
@@ -69,8 +69,8 @@ pub(crate) fn resume(
     until: Option<Setting>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'_, PyDict>> {
-    let until = until.map(Given::from);
-    let stopped = Stopped::open(&path, until.as_ref()).or_raise()?;
+    let until = until.map(SettingValue::from);
+    let stopped = StoppedRun::open(&path, until.as_ref()).or_raise()?;
     let (report, raised) = py.detach(|| {
         let interpreter = Interpreter::new(progress.as_ref());
         let report = stopped.resume(&interpreter);
@@ -113,7 +113,7 @@ fn with_unit(given: &Bound<'_, PyAny>) -> PyResult<String> {
     quantity.call_method1("with_unit", (given,))?.extract()
 }
 
-impl From<Setting> for Given {
+impl From<Setting> for SettingValue {
     fn from(setting: Setting) -> Self {
         match setting {
             Setting::Text(text) => Self::Text(text),
@@ -258,7 +258,7 @@ pub(crate) fn channels(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     )
 }
 
-/// Whether a process that lives is writing a result at `path`.
+/// Whether a running process is writing a result at `path`.
 #[pyfunction]
 pub(crate) fn is_being_written(path: PathBuf) -> PyResult<bool> {
     record::is_being_written(path).or_raise()

@@ -5,7 +5,7 @@ mod tasks;
 
 use chaindrive::Request;
 use chaindrive::channel::unit_attribute;
-use chaindrive::sweep::{self, Arrangement, Coordinate, Stacked};
+use chaindrive::sweep::{self, Arrangement, Coordinate, SweepArrays};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -68,7 +68,7 @@ impl Sweep {
 }
 
 /// Puts arrays into an answer, with what labels them.
-fn fill(answer: &Bound<'_, PyDict>, sweep: &sweep::Sweep, stacked: Stacked) -> PyResult<()> {
+fn fill(answer: &Bound<'_, PyDict>, sweep: &sweep::Sweep, stacked: SweepArrays) -> PyResult<()> {
     let py = answer.py();
     answer.set_item("dims", sweep.dims())?;
     answer.set_item("table", sweep.arrangement() == Arrangement::Table)?;

@@ -81,7 +81,7 @@ fn plain(limit: f64) -> String {
 pub fn check<T: Serialize + JsonSchema + 'static>(parameters: &T) -> Result<(), ParameterError> {
     let values = serde_json::to_value(parameters).expect("parameters are numbers and texts");
     let schema = schema_of::<T>();
-    let checked = Checked {
+    let checked = RangeCheck {
         definitions: schema.get("$defs").and_then(Value::as_object),
     };
     checked.value(&values, schema, "")
@@ -97,11 +97,11 @@ fn schema_of<T: JsonSchema + 'static>() -> &'static Value {
 }
 
 /// Values held against a schema with its named definitions.
-struct Checked {
+struct RangeCheck {
     definitions: Option<&'static Map<String, Value>>,
 }
 
-impl Checked {
+impl RangeCheck {
     fn value(&self, value: &Value, schema: &'static Value, at: &str) -> Result<(), ParameterError> {
         if let Some(name) = schema.get("$ref").and_then(Value::as_str)
             && let Some(target) = name

@@ -14,9 +14,9 @@ const TEMPERATURE: &str = "a temperature";
 /// Why a text is not the quantity that is needed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Complaint {
-    /// What is wrong.
+    /// Problem of the text.
     pub message: String,
-    /// What to write.
+    /// Text to write instead.
     pub hint: String,
 }
 

@@ -237,7 +237,7 @@ impl Reader<'_> {
         })
     }
 
-    /// The power behind a factor; 1 when there is none.
+    /// The power after a factor; 1 when there is none.
     fn power(&mut self) -> Result<f64, UnitProblem> {
         for (mark, power) in [("²", 2.0), ("³", 3.0), ("⁻¹", -1.0), ("⁻²", -2.0)] {
             if let Some(rest) = self.rest.strip_prefix(mark) {

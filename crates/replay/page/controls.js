@@ -153,7 +153,7 @@ class Player {
     const link = roller - chain.firstRoller;
     if (arrays.contact_force) rows.push(['on the teeth', quantity(arrays.contact_force.at(this.frame, roller), 'N')]);
     if (arrays.link_tension && link < chain.links) {
-      rows.push(['link behind it', quantity(arrays.link_tension.at(this.frame, chain.firstLink + link), 'N')]);
+      rows.push(['link after it', quantity(arrays.link_tension.at(this.frame, chain.firstLink + link), 'N')]);
     }
     const touched = view.marked === roller && this.contact?.frame === this.frame ? this.contact : null;
     const told = touched ? `Roller ${roller} touches ${touched.body || 'the teeth'}` : `Roller ${roller}`;

@@ -4,14 +4,14 @@
 //! recorded run ──film──► Film ──page──► HTML with figure, quantised frames and the program that shows them
 //! ```
 //!
-//! A [`Film`] is all that the page shows; it says nothing of forces or laws. [`page`] quantises it, packs it
+//! The [`Animation`] is all that the page shows; it says nothing of forces or laws. [`page`] quantises it, packs it
 //! and writes it into the page, whose HTML, style and programs lie in the folder `page` of this crate.
 
-mod film;
+mod animation;
 mod page;
 mod recorded;
 mod stream;
 
-pub use film::{About, Body, Chain, Contact, Curve, Film, Frames, Outline};
+pub use animation::{Animation, Body, Chain, Contact, Curve, Frames, Outline, PageTexts};
 pub use page::page;
-pub use recorded::{FilmError, MOST_FRAMES, Selection, film};
+pub use recorded::{AnimationError, MOST_FRAMES, Selection, film};

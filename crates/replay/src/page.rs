@@ -4,7 +4,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
-use crate::film::{About, Chain, Film};
+use crate::animation::{Animation, Chain, PageTexts};
 use crate::stream::{LEVELS, LEVELS_OF_CURVES, Stream, Streams};
 
 const PAGE: &str = include_str!("../page/page.html");
@@ -31,7 +31,7 @@ const OUTLINES: f64 = 1e-6;
 /// All of a film but the numbers.
 #[derive(Debug, Serialize)]
 struct Index<'a> {
-    about: &'a About,
+    about: &'a PageTexts,
     bodies: Vec<BodyIndex<'a>>,
     chains: &'a [Chain],
     curves: Vec<CurveIndex<'a>>,
@@ -39,7 +39,7 @@ struct Index<'a> {
     streams: &'a [Stream],
 }
 
-/// How exact the numbers are.
+/// Resolution of the packed numbers.
 #[derive(Debug, Serialize)]
 struct Quanta {
     /// Of places \[m\].
@@ -73,7 +73,7 @@ struct CurveIndex<'a> {
 ///
 /// # Panics
 /// Never: texts and numbers make JSON.
-pub fn page(film: &Film) -> String {
+pub fn page(film: &Animation) -> String {
     let streams = packed(film);
     let body = |body: &'_ crate::Body| {
         let outlines = body.outlines.iter();
@@ -116,7 +116,7 @@ pub fn page(film: &Film) -> String {
 }
 
 /// Where the values of every curve are: those that colours or arrows show are in the page already.
-fn curves(film: &Film) -> Vec<CurveIndex<'_>> {
+fn curves(film: &Animation) -> Vec<CurveIndex<'_>> {
     let frames = &film.frames;
     let shown = |channel: &str| match channel {
         "link_tension" => frames.link_tension.is_some(),
@@ -146,12 +146,12 @@ fn curves(film: &Film) -> Vec<CurveIndex<'_>> {
 }
 
 /// Quantum of the places of a film \[m\].
-fn distance(film: &Film) -> f64 {
+fn distance(film: &Animation) -> f64 {
     let pitches = film.chains.iter().map(|chain| chain.pitch / IN_A_PITCH);
     pitches.fold(DISTANCE, f64::min)
 }
 
-fn packed(film: &Film) -> Streams {
+fn packed(film: &Animation) -> Streams {
     let distance = distance(film);
     let mut streams = Streams::default();
     let frames = &film.frames;

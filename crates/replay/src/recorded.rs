@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use chaindrive::record::{LoggedContact, Recorded, RecordedChannel};
+use chaindrive::record::{LoggedContact, RecordedChannel, RecordedRun};
 use chaindrive::scene::SceneError;
 use chaindrive::{Figure, Instant, MissingChannel, Placement, Scene, SimulationError, patiently};
 use chaindrive_geometry::{ArcSpline, GeometryError, Point};
 use chaindrive_mechanics::{AssemblyError, BodyKind};
 
-use crate::film::{About, Body, Chain, Contact, Curve, Film, Frames, Outline};
+use crate::animation::{Animation, Body, Chain, Contact, Curve, Frames, Outline, PageTexts};
 
 /// Frames of a film unless somebody asks for another number: the start, and 5000 more.
 pub const MOST_FRAMES: usize = 5001;
@@ -38,7 +38,7 @@ impl Default for Selection {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "each message names its fields")]
-pub enum FilmError {
+pub enum AnimationError {
     /// The motion was not recorded.
     #[error("the replay takes {}, which {} not recorded: record={record:?}, or --record {}",
         .missing.join(", "), if .missing.len() == 1 { "was" } else { "were" }, .record.join(","))]
@@ -103,12 +103,12 @@ impl Selection {
 /// The film of a recorded run; `stop` is asked now and then whether to give up.
 ///
 /// # Errors
-/// [`FilmError`]: what the film needs was not recorded, or the scene in the result does not make a drive.
+/// [`AnimationError`]: what the film needs was not recorded, or the scene in the result does not make a drive.
 pub fn film(
-    recorded: &Recorded,
+    recorded: &RecordedRun,
     selection: &Selection,
     stop: &dyn Fn() -> bool,
-) -> Result<Film, FilmError> {
+) -> Result<Animation, AnimationError> {
     let name = match recorded.text("scene_name") {
         "" => "scene",
         name => name,
@@ -131,15 +131,15 @@ pub fn film(
     let missing = record.iter().filter(|it| recorded.channel(it).is_none());
     let missing: Vec<&'static str> = missing.copied().collect();
     if !missing.is_empty() {
-        return Err(FilmError::NotRecorded { missing, record });
+        return Err(AnimationError::NotRecorded { missing, record });
     }
     if recorded.time.is_empty() {
-        return Err(FilmError::NoSamples);
+        return Err(AnimationError::NoSamples);
     }
     let pitches = figure.chains.iter().map(|chain| chain.pitch);
     let chords = CHORDS * pitches.fold(f64::INFINITY, f64::min);
     let bodies = figure.bodies.iter().map(|body| shown_body(body, chords));
-    Ok(Film {
+    Ok(Animation {
         about: about(recorded),
         bodies: bodies.collect::<Result<_, _>>()?,
         chains: figure.chains.iter().map(shown_chain).collect(),
@@ -149,9 +149,9 @@ pub fn film(
     })
 }
 
-fn about(recorded: &Recorded) -> About {
+fn about(recorded: &RecordedRun) -> PageTexts {
     let text = |name: &str| recorded.text(name).to_owned();
-    About {
+    PageTexts {
         title: match recorded.text("title") {
             "" => text("scene_name"),
             title => title.to_owned(),
@@ -208,7 +208,7 @@ fn shown_chain(chain: &chaindrive::FigureChain) -> Chain {
     }
 }
 
-fn frames(recorded: &Recorded, figure: &Figure) -> Result<Frames, FilmError> {
+fn frames(recorded: &RecordedRun, figure: &Figure) -> Result<Frames, AnimationError> {
     let values = |name: &str| recorded.channel(name).map(|channel| channel.values.clone());
     let mut placements = Vec::new();
     let mut directions = Directions::new(figure);
@@ -303,10 +303,10 @@ fn normal(
     ))
 }
 
-fn curves(recorded: &Recorded, selection: &Selection) -> Result<Vec<Curve>, FilmError> {
+fn curves(recorded: &RecordedRun, selection: &Selection) -> Result<Vec<Curve>, AnimationError> {
     for name in selection.plots.iter().flatten() {
         if recorded.channel(name).is_none() {
-            return Err(FilmError::UnknownPlot {
+            return Err(AnimationError::UnknownPlot {
                 name: name.clone(),
                 known: recorded.names.join(", "),
             });
@@ -343,7 +343,7 @@ fn curves_of(channel: &RecordedChannel) -> Vec<Curve> {
 }
 
 /// Contacts of rollers with bodies, in the order of their beginning.
-fn contacts(recorded: &Recorded, figure: &Figure) -> Vec<Contact> {
+fn contacts(recorded: &RecordedRun, figure: &Figure) -> Vec<Contact> {
     let shown = |logged: &LoggedContact| {
         let bodies = figure.bodies.iter();
         let touchable = bodies.enumerate().filter(|(_, body)| {

@@ -19,7 +19,7 @@ pub(crate) const LEVELS: f64 = 400.0;
 /// Quanta between the least and the largest value of a curve, whose scale is stretched to its range.
 pub(crate) const LEVELS_OF_CURVES: f64 = 2000.0;
 
-/// What to undo, and where the bytes are.
+/// Filters to undo, and the position of the bytes.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Stream {
     name: String,
@@ -44,7 +44,7 @@ impl Stream {
     }
 }
 
-/// Packed arrays, one behind the other.
+/// Packed arrays, one after the other.
 #[derive(Debug, Default)]
 pub(crate) struct Streams {
     pub(crate) index: Vec<Stream>,
@@ -55,7 +55,7 @@ impl Streams {
     /// Packs an array (rows, columns), so that values come back within half a quantum.
     pub(crate) fn push(&mut self, name: &str, values: &[f64], columns: usize, quantum: f64) {
         let rows = values.len().checked_div(columns).unwrap_or(0);
-        let quantised = Quantised::new(values, quantum);
+        let quantised = QuantisedSeries::new(values, quantum);
         let (mut best, mut least) = ([0, 0], usize::MAX);
         for order in [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1]] {
             let (bytes, _) = planes(&differences(&quantised.whole, columns, order));
@@ -106,14 +106,14 @@ impl Streams {
 }
 
 /// Values as whole multiples of a quantum about an origin.
-struct Quantised {
+struct QuantisedSeries {
     whole: Vec<i64>,
     origin: f64,
     quantum: f64,
     missing: Option<i64>,
 }
 
-impl Quantised {
+impl QuantisedSeries {
     /// The origin lies in the middle of the values, where the numbers are smallest.
     fn new(values: &[f64], quantum: f64) -> Self {
         let finite = || values.iter().copied().filter(|value| value.is_finite());

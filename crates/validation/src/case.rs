@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::verdict::{Judged, Tolerance, Verdict, append};
+use crate::verdict::{JudgementKind, Tolerance, Verdict, append};
 
 /// One validation case: inputs, expected numbers, tolerances and their source.
 #[derive(Debug)]
@@ -121,7 +121,7 @@ impl Case {
         assert_eq!(found.len(), expected.len(), "{id}, {quantity}");
         let pairs = || found.iter().copied().zip(expected.iter().copied());
         let verdict = |(found, expected)| Verdict {
-            judged: Judged::Quantitative,
+            judged: JudgementKind::Quantitative,
             unit,
             expected: Value::from(expected),
             found: Value::from(found),
@@ -155,7 +155,7 @@ impl Case {
     pub fn judge_trend(&self, quantity: &str, found: &str, expected: &str, holds: bool) {
         let id = &self.id;
         self.record(&[Verdict {
-            judged: Judged::Trend,
+            judged: JudgementKind::Trend,
             expected: Value::from(expected),
             found: Value::from(found),
             agrees: holds,
@@ -193,7 +193,7 @@ impl Case {
             "{id}, {quantity}, not judged: {found:.6e} for {expected:.6e} {unit}, {share:.1e} of {tolerance:?}"
         );
         self.record(&[Verdict {
-            judged: Judged::Carried,
+            judged: JudgementKind::Carried,
             unit,
             expected: Value::from(expected),
             found: Value::from(found),

@@ -9,10 +9,10 @@
 //!
 //! For tests only: no crate depends on this one but for its own tests.
 
-mod again;
 mod case;
+mod rerun;
 mod verdict;
 
-pub use again::run_again;
 pub use case::Case;
+pub use rerun::run_again;
 pub use verdict::Tolerance;

@@ -7,7 +7,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::Value;
 
-/// How far what was found may be from what was expected.
+/// Largest difference between the value found and the one expected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tolerance {
     /// |found − expected| ≤ a, in the unit of the quantity.
@@ -50,10 +50,10 @@ impl Tolerance {
     }
 }
 
-/// How a row was judged.
+/// Kind of a judgement on a row.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Judged {
+pub(crate) enum JudgementKind {
     /// A number within a tolerance.
     #[default]
     Quantitative,
@@ -69,7 +69,7 @@ pub(crate) struct Verdict<'a> {
     pub(crate) case: &'a str,
     /// Where the expected number comes from: "computed" here, "measured" in tests of measured cases.
     pub(crate) kind: &'a str,
-    pub(crate) judged: Judged,
+    pub(crate) judged: JudgementKind,
     pub(crate) quantity: &'a str,
     pub(crate) unit: &'a str,
     pub(crate) expected: Value,
@@ -85,7 +85,7 @@ impl Default for Verdict<'_> {
         Self {
             case: "",
             kind: "computed",
-            judged: Judged::Quantitative,
+            judged: JudgementKind::Quantitative,
             quantity: "",
             unit: "",
             expected: Value::Null,

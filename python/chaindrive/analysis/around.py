@@ -142,7 +142,7 @@ def _wrap(run: xr.Dataset, wheel: SprocketParts, first: SprocketParts) -> tuple[
     stations = ((np.arange(chain.rollers) + passed[::every, None]) % chain.links)[on[::every]]
     if stations.size == 0:
         raise ParameterError(f"no roller lies on {wheel.name} during the run", wheel.name)
-    # The wrap begins behind the widest stretch of the loop where no roller lies on the sprocket.
+    # The wrap begins after the widest stretch of the loop where no roller lies on the sprocket.
     stations = np.sort(stations)
     gaps = np.diff(stations, append=stations[0] + chain.links)
     widest = int(np.argmax(gaps))

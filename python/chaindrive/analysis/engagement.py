@@ -61,7 +61,7 @@ def decay(teeth: int, count: int, *, angle: float | None = None) -> _Floats:
     Returns
     -------
     (2, count)
-        Tension behind every roller and load of every roller, over the tension of the tight side.
+        Tension after every roller and load of every roller, over the tension of the tight side.
 
     Notes
     -----

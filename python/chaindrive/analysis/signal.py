@@ -70,7 +70,7 @@ def sample_rate(values: xr.DataArray) -> float:
     if time.size < 8:
         raise ParameterError(f"{time.size} samples are too few: record at least 8", "time")
     intervals = np.diff(time)
-    # The last sample stands where the run ended, up to a step behind its place.
+    # The last sample stands where the run ended, up to a step after its place.
     mean = float(time[-2] - time[0]) / (time.size - 2)
     if np.abs(intervals[:-1] - mean).max() > 1e-3 * mean:
         raise ParameterError("the samples are not at equal intervals: interpolate first", "time")

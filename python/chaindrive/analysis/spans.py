@@ -129,7 +129,7 @@ class Stations:
     ) -> tuple[NDArray[np.float64], float, float] | None:
         """Return centre, radius and sense of what the rollers rest on up to or from a roller.
 
-        `before` is −1 where the stop lies before the roller, 1 where it lies behind.
+        `before` is −1 where the stop lies before the roller, 1 where it lies after.
         """
         count = len(self.rollers)
         place = self.rollers[index % count]

@@ -67,7 +67,7 @@ def _fit(
     points: list[_Vector],
     bulges: list[float],
 ) -> None:
-    # At a knot the directions before and behind may differ: those within the stretch count.
+    # At a knot the directions before and after may differ: those within the stretch count.
     inside = 1e-9 * (last - first)
     start, end = along(first)[0], along(last)[0]
     pair = _pair(start, along(first + inside)[1], end, along(last - inside)[1])

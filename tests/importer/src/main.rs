@@ -1,6 +1,6 @@
 //! Loads a unit and steps it: `importer UNIT.fmu INPUT OUTPUT`, with value references.
 //!
-//! Ten steps of 0.1 ms, the input at k in the k-th; the output behind each is printed as the number of its bits.
+//! Ten steps of 0.1 ms, the input at k in the k-th; the output after each is printed as the number of its bits.
 
 use std::path::Path;
 

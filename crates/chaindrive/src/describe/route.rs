@@ -35,7 +35,7 @@ pub struct SpanAtRest {
     pub name: String,
     /// Number of links.
     pub pitches: usize,
-    /// Distance between the last roller before and the first roller behind \[m\].
+    /// Distance between the last roller before and the first roller after \[m\].
     pub length: f64,
     /// Mean tension of its links \[N\].
     pub tension: f64,

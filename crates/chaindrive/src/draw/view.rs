@@ -66,7 +66,7 @@ impl View {
         let middle = 0.5 * (low.x + high.x);
         for (body, placement) in figure.bodies.iter().zip(&pose.placements) {
             if let Some((at, anchor)) = name_of(figure, body, placement, letter, middle) {
-                let name = Written::new(at, anchor, body, letter);
+                let name = TextBox::new(at, anchor, body, letter);
                 (low.x, high.x) = (low.x.min(name.left), high.x.max(name.right));
             }
         }
@@ -147,14 +147,14 @@ impl View {
     /// Names of sprockets above their centres, of guides at the middle of their faces; a name that would lie on an earlier one
     /// stands above it.
     pub(super) fn names(&self, out: &mut String, figure: &Figure, pose: &Pose) {
-        let mut written: Vec<Written> = Vec::new();
+        let mut written: Vec<TextBox> = Vec::new();
         for (body, placement) in figure.bodies.iter().zip(&pose.placements) {
             let id = id(&["name", body.kind.name(), &body.name]);
             let Some((at, anchor)) = name_of(figure, body, placement, self.letter, self.middle)
             else {
                 continue;
             };
-            let mut name = Written::new(at, anchor, body, self.letter);
+            let mut name = TextBox::new(at, anchor, body, self.letter);
             let height = 1.2 * self.letter;
             while let Some(other) = written.iter().find(|it| it.meets(&name, height)) {
                 name.base = other.base + height;
@@ -167,13 +167,13 @@ impl View {
 }
 
 /// The room that a name takes \[m\].
-struct Written {
+struct TextBox {
     left: f64,
     right: f64,
     base: f64,
 }
 
-impl Written {
+impl TextBox {
     fn new(at: Point, anchor: &str, body: &Body, letter: f64) -> Self {
         let width = LETTER_WIDTH * letter * body.name.chars().count() as f64;
         let left = match anchor {

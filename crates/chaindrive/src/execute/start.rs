@@ -10,7 +10,7 @@ use chaindrive_integrate::Method;
 use chaindrive_mechanics::{Assembled, Drive};
 
 use super::RunError;
-use crate::patience::assemble;
+use crate::interruptible::assemble;
 use crate::precision::{Choice, Estimate, ShortRuns, choose_with, estimate};
 use crate::record::Provenance;
 use crate::run_in::{Onlooker, RecordStart, record_start};

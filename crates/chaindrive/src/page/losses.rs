@@ -3,10 +3,10 @@
 use chaindrive_mechanics::{Place, warming};
 
 use super::Section;
-use super::sections::Told;
+use super::sections::PageContent;
 use crate::figure::{Measure, figure};
 
-impl Told<'_> {
+impl PageContent<'_> {
     pub(super) fn losses(&self) -> Section {
         let lost = self.summary.losses();
         let time = self.summary.duration();

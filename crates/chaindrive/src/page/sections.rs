@@ -1,14 +1,14 @@
 //! The sections of the page.
 
-use super::{Section, by_the_step};
+use super::{Section, error_by_step};
 use std::f64::consts::TAU;
 
 use crate::describe::left_out;
 use crate::figure::{Measure, Scale, duration, figure, percent};
 use crate::precision::Judgement;
 use crate::rating::{Load, Rating};
-use crate::summary::{Bearing, SprocketCourse, Steadiness, Summary};
-use crate::{RanIn, Simulation, Verdict};
+use crate::summary::{BearingForce, SprocketStatistics, Steadiness, Summary};
+use crate::{RunInReport, Simulation, Verdict};
 
 /// Share of the greatest power of its chain below which a sprocket idles. *Assumed*: bearings and teeth of an idler take less.
 const IDLES: f64 = 0.02;
@@ -30,16 +30,16 @@ const DECIDE: [&str; 7] = [
 const ROUNDING: f64 = 1e-6;
 
 /// A run as the page tells it.
-pub(super) struct Told<'a> {
+pub(super) struct PageContent<'a> {
     pub(super) verdict: &'a Verdict,
     pub(super) summary: &'a Summary,
     pub(super) simulation: &'a Simulation,
-    pub(super) ran_in: Option<&'a RanIn>,
+    pub(super) ran_in: Option<&'a RunInReport>,
     pub(super) judgement: Option<&'a Judgement>,
     pub(super) assumed: &'a [String],
 }
 
-impl Told<'_> {
+impl PageContent<'_> {
     pub(super) fn sections(&self) -> Vec<Section> {
         vec![
             self.verdict(),
@@ -74,7 +74,9 @@ impl Told<'_> {
             let told = format!("{time}, {samples} samples.");
             section.sentences.push(told);
         }
-        section.sentences.extend(self.ran_in.map(RanIn::to_string));
+        section
+            .sentences
+            .extend(self.ran_in.map(RunInReport::to_string));
         let known = self.summary.steadiness();
         if known.iter().flatten().next().is_some() {
             let is_known = |it: &&Steadiness| it.mean.half_width.is_finite();
@@ -169,7 +171,7 @@ impl Told<'_> {
     }
 
     /// Part of a sprocket in its chain: it drives, is driven or idles.
-    fn role(&self, sprocket: &SprocketCourse) -> &'static str {
+    fn role(&self, sprocket: &SprocketStatistics) -> &'static str {
         let sprockets = self.summary.bodies().sprockets.iter();
         let own = sprockets.filter(|it| it.chain == sprocket.chain);
         let greatest = own.map(|it| it.power.mean().abs()).fold(0.0, f64::max);
@@ -224,7 +226,7 @@ impl Told<'_> {
             }
         }
         if !section.rows.is_empty() {
-            let errors = by_the_step::of_tensions(self.judgement);
+            let errors = error_by_step::of_tensions(self.judgement);
             section.sentences.push(errors);
         }
         if let Some(until) = self.summary.known_from() {
@@ -255,7 +257,7 @@ impl Told<'_> {
         let bodies = self.summary.bodies();
         let sprockets = bodies.sprockets.iter().map(|it| (&it.name, &it.force));
         let guides = bodies.guides.iter().map(|(name, force)| (name, force));
-        let all: Vec<(String, &Bearing)> = sprockets
+        let all: Vec<(String, &BearingForce)> = sprockets
             .map(|(name, force)| (name.clone(), force))
             .chain(guides.map(|(name, force)| (format!("guide {name}"), force)))
             .collect();
@@ -289,9 +291,9 @@ impl Told<'_> {
         let columns = format!("{half}\t{most}\timpulse [{impulse}]\tclosing [m/s]");
         let mut section = Section::new("impacts of rollers that seat", &columns);
         for it in struck {
-            let errors = estimate.map(|all| by_the_step::of_impacts(all, &it.sprocket));
-            let half = errors.map(|it| by_the_step::cell(it.map(|it| it.p50)));
-            let greatest = errors.map(|it| by_the_step::cell(it.map(|it| it.p99)));
+            let errors = estimate.map(|all| error_by_step::of_impacts(all, &it.sprocket));
+            let half = errors.map(|it| error_by_step::cell(it.map(|it| it.p50)));
+            let greatest = errors.map(|it| error_by_step::cell(it.map(|it| it.p99)));
             let mut row = vec![it.sprocket.clone(), it.count.to_string()];
             row.push(scale.cell(it.force(0.5)));
             row.extend(half);
@@ -302,7 +304,7 @@ impl Told<'_> {
             section.rows.push(row);
         }
         if !section.rows.is_empty() {
-            let impulses = estimate.and_then(by_the_step::of_impulses);
+            let impulses = estimate.and_then(error_by_step::of_impulses);
             section.sentences.extend(impulses);
         }
         section

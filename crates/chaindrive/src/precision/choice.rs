@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 use super::Watch;
 use super::compare::{Pair, rms};
 use super::horizon::Horizon;
-use super::short_runs::{Beginning, ShortRuns};
+use super::short_runs::{ShortRunStart, ShortRuns};
 use super::trace::{Gap, Strands, Trace};
 use super::variant::{CAUTION, Candidates, Entry, Variant};
 use super::window::{Window, automatic, pinned, sharper};
@@ -95,7 +95,7 @@ pub struct Choice {
     pub accuracy: f64,
     /// Bound of the error of the run chosen \[–\].
     pub error: f64,
-    /// Whether it keeps the accuracy; if not, it is the best of the list.
+    /// Whether the accuracy asked for is kept; if not, this is the best method of the list.
     pub kept: bool,
     /// The quantity whose accuracy is promised.
     pub promise: Promise,
@@ -120,7 +120,7 @@ struct Trials<'a> {
 }
 
 impl Trials<'_> {
-    fn take(&mut self, from: Beginning, of: Variant) -> Result<usize, SimulationError> {
+    fn take(&mut self, from: ShortRunStart, of: Variant) -> Result<usize, SimulationError> {
         let run = of.run(self.run);
         self.short_runs
             .take(self.start, from, &run, &self.window, self.watch)
@@ -131,7 +131,7 @@ impl Trials<'_> {
         if self.failed.contains(&of) {
             return Ok(None);
         }
-        match self.take(Beginning::Start, of) {
+        match self.take(ShortRunStart::Start, of) {
             Ok(place) => Ok(Some(place)),
             Err(SimulationError::Interrupted) => Err(SimulationError::Interrupted),
             Err(_) => {
@@ -159,7 +159,7 @@ impl Trials<'_> {
         if nothing(self.short_runs.trace(base), of) {
             return Ok((Promise::Nothing, 0.0));
         }
-        let twin = self.take(Beginning::Apart, first)?;
+        let twin = self.take(ShortRunStart::Apart, first)?;
         let [base, twin] = [base, twin].map(|at| self.short_runs.trace(at));
         let strands = Strands::of([base, twin]);
         let apart = Pair::of(twin, base, strands);
@@ -182,7 +182,7 @@ impl Trials<'_> {
     }
 }
 
-/// Whether there is nothing to compare: what is nothing has no relative error.
+/// Whether the quantity is zero in the reference: then there is no relative error.
 fn nothing(base: &Trace, of: Quantity) -> bool {
     match of {
         Quantity::Tension => base.tensions(Strands::of([base])).mean() <= 0.0,
@@ -266,7 +266,8 @@ pub(crate) fn choose_with(
     let mut place = 0;
     while let Some(entry) = candidates.get(place) {
         let found = trials.pair(entry)?;
-        let found = found.map(|[candidate, judge]| Found::of(candidate, judge, entry, &names));
+        let found =
+            found.map(|[candidate, judge]| CandidateErrors::of(candidate, judge, entry, &names));
         let found = found.as_ref();
         let error_of =
             |promise, spread| found.map_or(f64::INFINITY, |it| it.error(promise, spread, accuracy));
@@ -320,8 +321,8 @@ fn examined(start: &Assembled, automatic: &Run) -> Window {
 /// such window on.
 const OPEN_LOSSES: f64 = 0.3;
 
-/// How far a candidate is from its judge.
-struct Found {
+/// Errors of a candidate against its reference run.
+struct CandidateErrors {
     /// Of the waveform of the tight span, root mean square over the mean \[–\].
     waveform: f64,
     /// Of means and root mean squares, the largest \[–\].
@@ -334,13 +335,13 @@ struct Found {
     unaccounted: f64,
     /// The same over what was moved \[–\].
     open: f64,
-    /// Whether impacts shorter than a step may feed themselves, in a candidate and its judge alike.
+    /// Whether impacts shorter than a step may add energy, in the candidate and its reference alike.
     implicit: bool,
     work: f64,
     gap: Option<Gap>,
 }
 
-impl Found {
+impl CandidateErrors {
     fn of(candidate: &Trace, judge: &Trace, entry: &Entry, names: &[String]) -> Self {
         let pair = Pair::of(candidate, judge, Strands::of([candidate, judge]));
         let waveform = pair.distances().into_iter().map(|distance| distance.tight);
@@ -436,7 +437,7 @@ impl Choice {
         let window = examined(start, &automatic(&self.run));
         let (sharper, _) = sharper(start, &self.run);
         for run in [&self.run, &sharper] {
-            short_runs.take(start, Beginning::Start, run, &window, watch)?;
+            short_runs.take(start, ShortRunStart::Start, run, &window, watch)?;
         }
         Ok(short_runs)
     }

@@ -50,7 +50,7 @@ impl<'a> Pair<'a> {
     /// ```
     ///
     /// A tension that is not a number agrees with nothing, not even with another one: compare traces by [`Strands`]
-    /// that all of them have. The mean is that of the samples compared: the tension may rise a hundredfold behind them.
+    /// that all of them have. The mean is that of the samples compared: the tension may rise a hundredfold after them.
     pub(super) fn distances(&self) -> Vec<Distance> {
         let samples = self.both();
         self.distances_over(self.from.tensions(self.strands).mean_of_first(samples))

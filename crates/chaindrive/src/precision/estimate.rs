@@ -7,12 +7,12 @@ use super::choice::Promise;
 use super::compare::{Comparison, Distance, Pair, rms};
 use super::horizon::{Divergence, Horizon, LIMIT};
 use super::impacts::ImpactErrors;
-use super::short_runs::{Beginning, ShortRuns};
+use super::short_runs::{ShortRunStart, ShortRuns};
 use super::trace::{Gap, Strands, Trace};
 use super::window::{Window, pinned, sharper};
 use crate::{Channel, Run, SimulationError};
 
-/// How exact a run is.
+/// Estimate of the numerical error of a run.
 ///
 /// ```text
 /// run      the beginning of the run, over the window
@@ -56,7 +56,7 @@ pub struct Estimate {
     pub force: [Comparison; 3],
     /// Impacts of rollers, by sprocket; none where no roller came to one.
     pub impacts: Vec<ImpactErrors>,
-    /// How long twins stay together.
+    /// Time for which two almost equal runs stay together.
     pub horizon: Horizon,
     /// Time from which on the waveform of the tensions compared differs from the exact one by 1 % \[s\]: when the
     /// error does, root mean square over the last tooth that passed, or the chaos horizon, whichever comes first.
@@ -117,10 +117,10 @@ pub(crate) fn estimate_with(
     let mut take =
         |from, run: &Run, share| short_runs.take(start, from, run, &window.first(share), watch);
     let places = [
-        take(Beginning::Start, &run, 1.0)?,
-        take(Beginning::Apart, &run, 1.0)?,
-        take(Beginning::Start, &better, SHADOWS)?,
-        take(Beginning::Start, &best, EARLY)?,
+        take(ShortRunStart::Start, &run, 1.0)?,
+        take(ShortRunStart::Apart, &run, 1.0)?,
+        take(ShortRunStart::Start, &better, SHADOWS)?,
+        take(ShortRunStart::Start, &best, EARLY)?,
     ];
     let traces = places.map(|place| short_runs.trace(place));
     let [base, twin, shadow, second] = traces;
@@ -131,7 +131,7 @@ pub(crate) fn estimate_with(
         let early = window.first(EARLY).samples();
         let factor = factor([base, shadow, second], strands, early, expected);
         let near = Pair::of(shadow, base, strands).distances().into_iter();
-        // Of one scale, though the tension may rise behind the last sample of the second.
+        // Of one scale, though the tension may rise after the last sample of the second.
         let scale = base.tensions(strands).mean_of_first(shadow.len());
         let further = Pair::of(second, shadow, strands)
             .distances_over(scale)

@@ -20,9 +20,9 @@ pub(crate) struct ShortRuns {
     evaluations: u64,
 }
 
-/// Where a short run begins.
+/// Start of a short run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Beginning {
+pub(super) enum ShortRunStart {
     /// As assembled.
     Start,
     /// 1e-12 m apart from it: the twin.
@@ -31,7 +31,7 @@ pub(super) enum Beginning {
 
 #[derive(Debug)]
 struct ShortRun {
-    from: Beginning,
+    from: ShortRunStart,
     /// Its settings and the interval of its samples; how long it is makes no other run of it.
     run: Run,
     trace: Trace,
@@ -48,7 +48,7 @@ impl ShortRuns {
     pub(super) fn take(
         &mut self,
         start: &Assembled,
-        from: Beginning,
+        from: ShortRunStart,
         run: &Run,
         window: &Window,
         watch: Watch<'_>,
@@ -58,8 +58,8 @@ impl ShortRuns {
         let taken = &mut self.taken[place];
         let mut simulation = match (taken.simulation.take(), from) {
             (Some(simulation), _) => simulation,
-            (None, Beginning::Start) => Simulation::from_assembled(start.clone(), &run)?,
-            (None, Beginning::Apart) => Simulation::from_assembled(start.nudged(APART), &run)?,
+            (None, ShortRunStart::Start) => Simulation::from_assembled(start.clone(), &run)?,
+            (None, ShortRunStart::Apart) => Simulation::from_assembled(start.nudged(APART), &run)?,
         };
         let before = simulation.statistics().evaluations;
         let end = taken.trace.go_on(&mut simulation, window, watch);
@@ -73,7 +73,7 @@ impl ShortRuns {
     }
 
     /// Place of a run, begun or not.
-    fn place(&mut self, from: Beginning, run: &Run) -> usize {
+    fn place(&mut self, from: ShortRunStart, run: &Run) -> usize {
         let run = Run {
             until: f64::INFINITY,
             ..run.clone()
@@ -105,7 +105,7 @@ impl ShortRuns {
     pub(crate) fn keep_for(&mut self, run: &Run) {
         let half = run.step.map(|step| 0.5 * step);
         let wanted = |it: &ShortRun| {
-            it.from == Beginning::Start && (it.run.step == run.step || it.run.step == half)
+            it.from == ShortRunStart::Start && (it.run.step == run.step || it.run.step == half)
         };
         self.taken.retain(wanted);
     }

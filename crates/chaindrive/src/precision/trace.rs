@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::Watch;
 use super::window::Window;
 use crate::figure::duration;
-use crate::patience::LOOK;
+use crate::interruptible::LOOK;
 use crate::{Run, Simulation, SimulationError};
 
 /// Share of the energy moved below which losses are not told from none: 0.01 points of efficiency, finer than any is measured.
@@ -36,14 +36,14 @@ pub(super) struct Trace {
     /// Impacts of rollers that came to a sprocket.
     pub(super) impacts: Vec<Impact>,
     /// The energy of the run.
-    pub(super) energy: Lost,
+    pub(super) energy: LossTotals,
     /// Counts of the time stepping.
     pub(super) statistics: Statistics,
 }
 
 /// Losses of a run, and the part of its energy that is unaccounted for.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Lost {
+pub(super) struct LossTotals {
     /// Energy lost \[J\].
     pub(super) losses: f64,
     /// Energy unaccounted for at the end, in magnitude \[J\].
@@ -90,7 +90,7 @@ impl fmt::Display for Gap {
     }
 }
 
-impl Lost {
+impl LossTotals {
     fn of(simulation: &Simulation) -> Self {
         let now = simulation.observation().energy;
         let start = simulation.start_energy().unwrap_or(now);
@@ -161,7 +161,7 @@ impl Trace {
                 return Err(SimulationError::Interrupted);
             }
         }
-        self.energy = Lost::of(simulation);
+        self.energy = LossTotals::of(simulation);
         self.statistics = *simulation.statistics();
         self.gap = self.first_gap(&simulation.system().span_names());
         Ok(())

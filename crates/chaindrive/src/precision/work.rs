@@ -12,7 +12,7 @@ use super::short_runs::APART;
 use super::trace::{Gap, Strands, Trace};
 use super::variant::{Variant, references, usual};
 use super::window::{Window, automatic, pinned};
-use crate::{RanIn, Run, SimulationError, run_in};
+use crate::{Run, RunInReport, SimulationError, run_in};
 
 /// Settings of a work-precision study.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,7 +53,7 @@ pub struct Row {
     pub statistics: Statistics,
     /// Errors against the reference.
     pub errors: Errors,
-    /// Whether the tension errs by no more than the reference itself may: then it only says "no more than that".
+    /// Whether the error of the tension is below that of the reference itself: then it is an upper bound only.
     pub reference_limited: bool,
     /// Why there is nothing else in the row, if the run failed.
     pub failure: Option<String>,
@@ -64,19 +64,19 @@ pub struct Row {
 pub struct Table {
     /// One row a variant, in the order of the study.
     pub rows: Vec<Row>,
-    /// How the drive was run in before, if it was.
-    pub ran_in: Option<RanIn>,
+    /// The run-in before, if there was one.
+    pub ran_in: Option<RunInReport>,
     /// Time over which was compared \[s\].
     pub window: f64,
-    /// How long twins of the reference stay together; pointwise errors end there.
+    /// Time for which twins of the reference stay together; pointwise errors end there.
     pub horizon: Horizon,
     /// The reference.
     pub reference: Variant,
     /// The independent method that checks it.
     pub check: Variant,
-    /// How far the two are apart.
+    /// Differences between the two.
     pub agreement: Errors,
-    /// How far replicates of the reference are apart.
+    /// Differences between replicates of the reference.
     pub spread: Errors,
     /// Mean tension of all spans, or of all links where they are compared \[N\].
     pub mean_tension: f64,

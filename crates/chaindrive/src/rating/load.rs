@@ -1,4 +1,4 @@
-//! What a run asks of a chain.
+//! Load of a chain in a run, for its rating.
 
 use chaindrive_mechanics::Strength;
 

@@ -1,4 +1,4 @@
-//! How a chain is to be oiled.
+//! Lubrication that a chain needs.
 
 /// Class of lubrication that a chain speed asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -3,7 +3,7 @@
 /// Factors of 1 to 6 strands.
 const FACTORS: [f64; 6] = [1.0, 1.7, 2.5, 3.3, 3.9, 4.6];
 
-/// How many times the power of a single strand several carry \[–\]: 1, 1.7, 2.5, 3.3, 3.9 and 4.6 for one to six, and no more beyond.
+/// Power of a multi-strand chain over that of a single strand \[–\]: 1, 1.7, 2.5, 3.3, 3.9 and 4.6 for one to six, and no more beyond.
 ///
 /// The strands do not share the load evenly. Chinese practice after GB/T 18150 takes 1.75 for two; in fatigue three strands with
 /// a clearance fit were measured to bear 2.0 times, with an interference fit 2.4 times as much as one (*J. Soc. Materials Science, Japan* 8, 1959, 638).

@@ -161,7 +161,7 @@ fn what_nobody_rates_says_why_and_what_its_twin_bears() {
         ..american(1)
     };
     let twin = Some(INCH_PITCH);
-    let rating = Rating::of(&load(unknown(Unrated::SourceMissing { twin })));
+    let rating = Rating::of(&load(unknown(MissingRating::SourceMissing { twin })));
     assert_eq!((rating.governing(), rating.utilisation()), (None, None));
     assert!(
         rating
@@ -169,7 +169,7 @@ fn what_nobody_rates_says_why_and_what_its_twin_bears() {
             .is_some_and(|it| (it / 12.16e3 - 1.0).abs() < 1e-3)
     );
     assert!(rating.static_safety.is_some(), "the other figures stand");
-    let none = Rating::of(&load(unknown(Unrated::NoType)));
+    let none = Rating::of(&load(unknown(MissingRating::NoType)));
     assert_eq!(none.twin, None);
     // What the maker says holds for all strands.
     let maker = Strength {

@@ -4,12 +4,12 @@
 //! knows neither truth values nor tables.
 
 use chaindrive_integrate::Method;
-use chaindrive_mechanics::Unrated;
+use chaindrive_mechanics::MissingRating;
 use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value};
 
-use crate::RanIn;
+use crate::RunInReport;
 use crate::Summary;
 use crate::page::{Page, numerics};
 use crate::precision::{Choice, Judgement};
@@ -18,7 +18,7 @@ use crate::statistic::Statistic;
 use crate::zarr::{Ending, Story};
 use crate::{Reason, Run, Scene, Simulation, Stepping, Verdict};
 
-/// Where a run came from.
+/// Origin of a run: scene, versions, run-in and choice of method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Provenance {
     /// Title of the scene, in a line.
@@ -35,9 +35,9 @@ pub struct Provenance {
     pub run: Run,
     /// Simulated time between two checkpoints \[s\], where they are asked for.
     pub checkpoint_every: Option<f64>,
-    /// How it was run in, if it was.
-    pub ran_in: Option<RanIn>,
-    /// How method and step were chosen, if they were.
+    /// The run-in, if there was one.
+    pub ran_in: Option<RunInReport>,
+    /// Choice of method and step, if one was made.
     pub choice: Option<Choice>,
     /// When somebody asked for it, or for it to go on.
     pub began: Instant,
@@ -200,7 +200,7 @@ fn rating(story: &mut Story, of: &Rating, is_only: bool) {
             story.number(&named("strand_factor"), of.strand_factor);
             story.number(&named("service_factor"), of.service_factor);
         }
-        if let Err(why @ Unrated::SourceMissing { .. }) = of.limits {
+        if let Err(why @ MissingRating::SourceMissing { .. }) = of.limits {
             story.number(&named("power_carried"), of.carried);
             story.text(&named("power_unrated"), &why.to_string());
         }

@@ -7,28 +7,28 @@ use serde::{Deserialize, Serialize};
 use chaindrive_mechanics::{Assembled, Drive, SystemMemory};
 
 use super::Provenance;
-use crate::patience::assemble;
+use crate::interruptible::assemble;
 use crate::precision::{Choice, Quantity};
 use crate::scene::SceneError;
-use crate::seal::{Sealed, opened, sealed};
+use crate::seal::{SealedValue, opened, sealed};
 use crate::{
-    Given, RanIn, Request, RequestError, Run, RunIn, Scene, SealError, Simulation, SimulationError,
-    Snapshot, SnapshotError, Summary,
+    Request, RequestError, Run, RunIn, RunInReport, Scene, SealError, SettingValue, Simulation,
+    SimulationError, Snapshot, SnapshotError, Summary,
 };
 
-/// Why a drive does not stand where it stood.
-pub(crate) enum NotAgain {
+/// Reason why a drive cannot be brought back to its checkpoint.
+pub(crate) enum RestoreError {
     Start(SimulationError),
     Snapshot(SnapshotError),
 }
 
-impl From<SimulationError> for NotAgain {
+impl From<SimulationError> for RestoreError {
     fn from(error: SimulationError) -> Self {
         Self::Start(error)
     }
 }
 
-impl From<SnapshotError> for NotAgain {
+impl From<SnapshotError> for RestoreError {
     fn from(error: SnapshotError) -> Self {
         Self::Snapshot(error)
     }
@@ -52,14 +52,14 @@ pub struct Checkpoint {
     pub(crate) summary: Summary,
     /// None before the first sample of a run that is run in: it begins anew.
     pub(crate) snapshot: Option<Snapshot>,
-    /// Where the record begins, if the drive was run in.
+    /// Start of the record, if the drive was run in.
     start: Option<Start>,
 }
 
 /// A drive that was run in, at t = 0.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Start {
-    ran_in: RanIn,
+    ran_in: RunInReport,
     /// Time \[s\] on the clock of the drive, and that of the record's t = 0.
     clock: [f64; 2],
     system: SystemMemory,
@@ -67,7 +67,7 @@ struct Start {
     state: [Vec<f64>; 3],
 }
 
-impl Sealed for Checkpoint {
+impl SealedValue for Checkpoint {
     const KIND: &'static str = "checkpoint";
 }
 
@@ -145,7 +145,7 @@ impl Checkpoint {
         opened(bytes)
     }
 
-    /// Whether a scene is that of the run, whatever its end: one that is carried on farther is still the same.
+    /// Whether a scene is that of the run; its end may differ, for a run that goes on longer is the same run.
     pub(crate) fn is_of(&self, scene: &str) -> bool {
         let endless = |text: &str| {
             let scene = Scene::from_text(text, &self.scene_name)?;
@@ -185,8 +185,8 @@ impl Checkpoint {
     /// Another end, not before the last sample.
     ///
     /// # Errors
-    /// A text that is no time, an end that lies behind or leaves too many samples.
-    pub(crate) fn extend(&mut self, until: &Given) -> Result<(), RequestError> {
+    /// A text that is no time, an end that has passed or leaves too many samples.
+    pub(crate) fn extend(&mut self, until: &SettingValue) -> Result<(), RequestError> {
         let scene = Scene::from_text(&self.scene, &self.scene_name)?;
         let time = until.time(&scene, "until")?;
         let reached = self.summary.samples.saturating_sub(1) as f64 * self.run.every;
@@ -218,8 +218,8 @@ impl Checkpoint {
         })
     }
 
-    /// How the drive was run in, if it was.
-    pub(crate) fn ran_in(&self) -> Option<RanIn> {
+    /// The run-in of the drive, if there was one.
+    pub(crate) fn ran_in(&self) -> Option<RunInReport> {
         self.start.as_ref().map(|start| start.ran_in.clone())
     }
 
@@ -236,7 +236,7 @@ impl Checkpoint {
         &self,
         drive: &Drive,
         stop: &dyn Fn() -> bool,
-    ) -> Result<Assembled, NotAgain> {
+    ) -> Result<Assembled, RestoreError> {
         let Some(start) = &self.start else {
             return Ok(assemble(drive, stop)?);
         };
@@ -252,7 +252,7 @@ impl Checkpoint {
         Ok(stood.map_err(SnapshotError::from)?.recorded_from(zero))
     }
 
-    /// How method and step were chosen.
+    /// Choice of method and step.
     pub(crate) fn choice(&self) -> Option<&Choice> {
         self.choice.as_ref()
     }

@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 /// Samples of a run, or every n-th of them, with what the result says about itself.
 #[derive(Clone, Debug, Default)]
-pub struct Recorded {
+pub struct RecordedRun {
     /// Attributes of the result.
     pub attributes: Map<String, Value>,
     /// Samples of the run.
@@ -49,7 +49,7 @@ pub struct LoggedContact {
     pub peak_force: f64,
 }
 
-impl Recorded {
+impl RecordedRun {
     /// The smallest stride that leaves at most so many samples, the first among them.
     pub fn stride(samples: usize, most: usize) -> usize {
         samples.div_ceil(most.max(1)).max(1)

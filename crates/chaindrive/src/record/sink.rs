@@ -1,4 +1,4 @@
-//! Where the samples of a run go.
+//! Destinations of the samples of a run.
 
 use serde_json::{Map, Value};
 
@@ -7,12 +7,12 @@ use crate::precision::Judgement;
 use crate::zarr::Ending;
 use crate::{Channel, Run, Simulation, Summary};
 
-/// Where samples go: memory, a store, a table.
+/// Destination of samples: memory, a store, a table.
 pub trait Sink {
     /// Why it refuses.
     type Error: std::error::Error;
 
-    /// Takes note of a run that is about to begin: once, or before its run-in and behind it.
+    /// Takes note of a run that is about to begin: once, or before its run-in and after it.
     ///
     /// # Errors
     /// The place is taken, or cannot be written.
@@ -37,7 +37,7 @@ pub trait Sink {
         Ok(())
     }
 
-    /// Whether it keeps the samples, so that somebody will look at more than the summary of them.
+    /// Whether the samples are kept; otherwise only their summary is read.
     fn keeps_samples(&self) -> bool {
         true
     }
@@ -77,9 +77,9 @@ pub struct End<'a> {
     pub simulation: &'a Simulation,
     /// The account of its samples.
     pub summary: &'a Summary,
-    /// How exact it is; nothing is said of a run that failed.
+    /// Estimate of the numerical error; none for a run that failed.
     pub judgement: Option<&'a Judgement>,
-    /// How it ended.
+    /// End of the run, with its reason.
     pub ending: &'a Ending,
     /// Attributes of the result.
     pub attributes: &'a Map<String, Value>,

@@ -21,7 +21,7 @@
 //! Whenever the process dies, the group document describes chunks that are there. Files are not
 //! synchronised with the disk one by one: a result outlives the program, not a power cut.
 //!
-//! `Recorded::open` reads a store back, and `Stopped::open` claims one to go on with.
+//! `RecordedRun::open` reads a store back, and `StoppedRun::open` claims one to go on with.
 //!
 //! A reader has to open the file of a chunk once, as `zarr-python` does. One that asks for its size
 //! first, as object stores do, may then find another file; once the run has ended this does not matter.
@@ -29,7 +29,7 @@
 mod content;
 mod events;
 mod reader;
-mod stopped;
+mod stopped_run;
 
 use std::fmt;
 use std::path::Path;
@@ -38,7 +38,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Map, Value};
 
 pub use reader::{ReadError, inspect};
-pub use stopped::{ResumeError, Stopped};
+pub use stopped_run::{ResumeError, StoppedRun};
 
 use super::attributes::{Provenance, attributes};
 use crate::precision::Judgement;
@@ -135,7 +135,7 @@ impl ZarrWriter {
         Ok(writer)
     }
 
-    /// Goes on with a store that was left: what it holds behind the checkpoint is forgotten.
+    /// Goes on with a store that was left: what it holds after the checkpoint is forgotten.
     pub(super) fn go_on(
         mut store: Store,
         checkpoint: &Checkpoint,
@@ -238,7 +238,7 @@ impl ZarrWriter {
     /// Takes in what is said about the error of the run; it is stored with the next commit.
     ///
     /// Channels whose waveforms cease to mean anything within the run get the attribute `waveform_horizon` \[s\]:
-    /// samples behind it are for statistics; and `waveform_horizon_of`, the channel on whose errors it was found.
+    /// samples after it are for statistics; and `waveform_horizon_of`, the channel on whose errors it was found.
     pub fn judge(&mut self, judgement: &Judgement) {
         self.content.judge(judgement);
         self.judgement = Some(judgement.clone());

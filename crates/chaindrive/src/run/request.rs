@@ -1,6 +1,6 @@
 //! Request of a run.
 
-use super::{Given, RequestError, Run, Settings};
+use super::{RequestError, Run, SettingValue, Settings};
 use crate::scene::Quantity;
 use crate::{Channel, Scene, SimulationError};
 
@@ -73,7 +73,7 @@ impl Request {
     ///
     /// # Errors
     /// A text that is no time, or a time that is not positive.
-    pub fn with_checkpoints(self, every: &Given) -> Result<Self, RequestError> {
+    pub fn with_checkpoints(self, every: &SettingValue) -> Result<Self, RequestError> {
         let name = "checkpoint_every";
         let time = every.time(&self.scene, name)?;
         if !(time > 0.0 && time.is_finite()) {

@@ -8,7 +8,7 @@ use crate::{RequestError, SimulationError, Stepping};
 
 /// A value that a caller gives for a key of `[run]`.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Given {
+pub enum SettingValue {
     /// As a scene writes it, with a unit: `1 ms`. A number without one is refused where the setting has a unit.
     Text(String),
     /// In SI units.
@@ -33,30 +33,30 @@ pub enum Given {
 /// # Example
 ///
 /// ```
-/// use chaindrive::{Given, Request, Scene, Settings, Stepping};
+/// use chaindrive::{SettingValue, Request, Scene, Settings, Stepping};
 ///
 /// let scene = Scene::preset("spinning_ring")?.replace("run.step", "10 us")?;
-/// let settings = Settings::default().with("until", Given::Text("2 ms".into()));
+/// let settings = Settings::default().with("until", SettingValue::Text("2 ms".into()));
 /// assert_eq!(Request::new(&scene, &settings)?.run.step, Some(1e-5));
 ///
-/// let settings = settings.with("method", Given::Text("rk4".into()));
+/// let settings = settings.with("method", SettingValue::Text("rk4".into()));
 /// let request = Request::new(&scene, &settings)?;
 /// assert_eq!((request.run.stepping, request.run.step), (Stepping::Rk4, None));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Settings(Vec<(String, Given)>);
+pub struct Settings(Vec<(String, SettingValue)>);
 
 impl Settings {
     /// The settings with one more, by its key in `[run]`.
     #[must_use]
-    pub fn with(mut self, key: &str, value: Given) -> Self {
+    pub fn with(mut self, key: &str, value: SettingValue) -> Self {
         self.0.retain(|(known, _)| known != key);
         self.0.push((key.to_owned(), value));
         self
     }
 
-    fn get(&self, key: &str) -> Option<&Given> {
+    fn get(&self, key: &str) -> Option<&SettingValue> {
         self.0
             .iter()
             .find_map(|(known, value)| (known == key).then_some(value))
@@ -84,7 +84,7 @@ impl Settings {
         if self.get("accuracy").is_some() {
             keys.extend(STEPPING_KEYS);
         }
-        if let Some(Given::Text(method)) = self.get("method")
+        if let Some(SettingValue::Text(method)) = self.get("method")
             && method != scene.run_defaults().method.unwrap_or_default().name()
         {
             keys.push("step");
@@ -95,7 +95,7 @@ impl Settings {
     /// Refuses what no scene could be asked about: numbers out of range, unknown methods, two that exclude each other.
     fn check(&self) -> Result<(), SimulationError> {
         for name in NUMBERS {
-            let Some(&Given::Number(value)) = self.get(name) else {
+            let Some(&SettingValue::Number(value)) = self.get(name) else {
                 continue;
             };
             let (allowed, fits) = match name {
@@ -110,7 +110,7 @@ impl Settings {
                 });
             }
         }
-        if let Some(Given::Text(method)) = self.get("method")
+        if let Some(SettingValue::Text(method)) = self.get("method")
             && Stepping::from_name(method).is_none()
         {
             return Err(unknown(
@@ -119,7 +119,7 @@ impl Settings {
                 &Stepping::ALL.map(Stepping::name),
             ));
         }
-        if let Some(Given::Names(kinds)) = self.get("events") {
+        if let Some(SettingValue::Names(kinds)) = self.get("events") {
             let known = ["teeth", "guides", "joints"];
             if let Some(kind) = kinds.iter().find(|kind| !known.contains(&kind.as_str())) {
                 return Err(unknown("events", kind, &known));
@@ -143,7 +143,7 @@ fn unknown(setting: &'static str, name: &str, known: &[&'static str]) -> Simulat
     }
 }
 
-impl Given {
+impl SettingValue {
     /// As a command line has it, where everything is a text: a number alone is one in SI units.
     pub fn written(text: &str) -> Self {
         match text.trim().parse() {

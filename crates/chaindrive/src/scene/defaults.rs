@@ -18,7 +18,7 @@ use serde_json::{Value as Json, json};
 use super::expected::kind_of;
 use super::schema::Version;
 
-/// Where a default comes from.
+/// Source of a default.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Basis {
     /// Nothing but judgement; the text gives the reason.
@@ -45,7 +45,7 @@ pub(crate) struct Default<T: 'static = f64> {
     pub(crate) keys: &'static [&'static str],
     /// Unit, or what it is a multiple of; none of a member of a family.
     pub(crate) unit: &'static str,
-    /// Where it comes from.
+    /// Its source.
     pub(crate) basis: Basis,
     /// Its values, each from a version on, the first version first.
     values: &'static [(Version, T)],
@@ -89,7 +89,7 @@ impl<T: Copy + Serialize> Default<T> {
     }
 }
 
-/// How spans set off.
+/// Motion of the spans at the start.
 pub(crate) static SPAN_START: Default<SpanStart> = Default {
     keys: &["Route.start"],
     unit: "",
@@ -102,7 +102,7 @@ pub(crate) static SPAN_START: Default<SpanStart> = Default {
     ],
 };
 
-/// Where a chain carries its pretension.
+/// Phase at which a chain carries its pretension.
 pub(crate) static PRETENSION_AT: Default<PretensionAt> = Default {
     keys: &["Route.pretension_at"],
     unit: "",
@@ -137,7 +137,7 @@ pub(crate) static PIN_ENDS: Default<BeamEnds> = Default {
     values: &[(Version::V0_1, BeamEnds::Supported)],
 };
 
-/// How impacts lose energy.
+/// Energy loss of impacts.
 pub(crate) static DISSIPATION: Default<Hysteresis> = Default {
     keys: &["Contact.dissipation"],
     unit: "",

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value as Json;
 
-use super::resolved::{Resolved, leaf};
+use super::resolved::{ResolvedScene, leaf};
 use super::validate::below;
 use super::{Scene, SceneError};
 
@@ -77,7 +77,7 @@ pub fn diff(first: &Scene, second: &Scene) -> Result<Vec<Difference>, SceneError
 
 /// Every value of a scene in full, by its place.
 fn leaves(scene: &Scene) -> Result<Vec<(String, String)>, SceneError> {
-    let resolved = Resolved::of(scene)?;
+    let resolved = ResolvedScene::of(scene)?;
     let mut found = Vec::new();
     for (key, value) in &resolved.values {
         visit(value, key, key, &resolved, &mut found);
@@ -90,7 +90,7 @@ fn visit(
     value: &Json,
     place: &str,
     path: &str,
-    resolved: &Resolved,
+    resolved: &ResolvedScene,
     found: &mut Vec<(String, String)>,
 ) {
     match value {

@@ -139,7 +139,7 @@ impl Scene {
     }
 }
 
-/// Remedy for a path that goes on behind a value.
+/// Remedy for a path that goes on past a value.
 const PUT: &str = "give the path of a table or a value, such as `chain.links`";
 
 enum Key {
@@ -147,7 +147,7 @@ enum Key {
     Index(usize),
 }
 
-/// Whether a path goes on behind `chain`, which may be written as the name of a catalogue chain.
+/// Whether a path goes on past `chain`, which may be written as the name of a catalogue chain.
 fn leads_into_chain(keys: &[Key]) -> bool {
     matches!(keys, [Key::Name(first), _, ..] if first == "chain")
 }
@@ -282,7 +282,7 @@ fn take_toml(root: &mut Item, keys: &[Key]) -> Option<()> {
     Some(())
 }
 
-/// Puts a value where another one was and keeps the comment behind it.
+/// Puts a value where another one was and keeps the comment after it.
 fn put_value(item: &mut Item, mut value: Toml) {
     if let Some(old) = item.as_value() {
         *value.decor_mut() = old.decor().clone();

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::place::Place;
+use super::text_span::TextSpan;
 use crate::plain;
 
 /// One thing to mend in a scene.
@@ -11,7 +11,7 @@ pub struct Problem {
     /// Place in the scene, such as `sprockets[1].teeth`; empty for the text as a whole.
     pub path: String,
     /// Place in the text; absent where an option, an argument or a program gave the value.
-    pub place: Option<Place>,
+    pub place: Option<TextSpan>,
     /// The mistake, with the offending value.
     pub message: String,
     /// The values that are allowed, or something to try.
@@ -21,7 +21,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    pub(crate) fn new(path: &str, place: Option<Place>, message: impl Into<String>) -> Self {
+    pub(crate) fn new(path: &str, place: Option<TextSpan>, message: impl Into<String>) -> Self {
         Self {
             path: plain(path).into_owned(),
             place,
@@ -41,11 +41,11 @@ impl Problem {
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.place {
-            Some(Place {
+            Some(TextSpan {
                 line,
                 columns: Some([first, _]),
             }) => write!(f, "{line}:{first}: ")?,
-            Some(Place { line, .. }) => write!(f, "{line}: ")?,
+            Some(TextSpan { line, .. }) => write!(f, "{line}: ")?,
             None => {}
         }
         if !self.path.is_empty() {
@@ -94,7 +94,7 @@ impl Problems {
         self.found == 0
     }
 
-    /// Whether a problem of this place is kept.
+    /// Whether a problem at this path is kept.
     pub(crate) fn speak_of(&self, path: &str) -> bool {
         self.kept.iter().any(|problem| problem.path == path)
     }
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn reads_like_a_compiler() {
-        let teeth = Place {
+        let teeth = TextSpan {
             line: 2,
             columns: Some([9, 10]),
         };

@@ -5,7 +5,7 @@ use serde_json::{Map, Value as Json};
 use chaindrive_quantities::Dimension;
 
 /// Expectation of a schema, after references and optional wrappers.
-pub(crate) enum Expected<'s> {
+pub(crate) enum Expectation<'s> {
     Table(&'s Json),
     List(&'s Json),
     /// The members of a family, and the kind of a table that does not name one.
@@ -19,27 +19,27 @@ pub(crate) enum Expected<'s> {
     Anything,
 }
 
-impl<'s> Expected<'s> {
+impl<'s> Expectation<'s> {
     /// Expectation of a schema freed of references.
     pub(crate) fn of(schema: &'s Json) -> Self {
         if let Some(name) = schema.get("x-dimension").and_then(Json::as_str)
             && let Some(dimension) = Dimension::named(name)
         {
-            return Expected::Quantity(schema, dimension);
+            return Expectation::Quantity(schema, dimension);
         }
         if schema.get("x-run-in").is_some() {
-            return Expected::RunIn;
+            return Expectation::RunIn;
         }
         if let Some(members) = schema.get("oneOf").and_then(Json::as_array) {
             if members.iter().all(|member| kind_of(member).is_some()) {
                 let unnamed = schema.get("x-default-kind").and_then(Json::as_str);
-                return Expected::Kinds(members, unnamed);
+                return Expectation::Kinds(members, unnamed);
             }
             let words = members.iter().flat_map(words_of);
-            return Expected::Words(words.collect());
+            return Expectation::Words(words.collect());
         }
         if schema.get("enum").is_some() {
-            return Expected::Words(words_of(schema).collect());
+            return Expectation::Words(words_of(schema).collect());
         }
         let kind = match schema.get("type") {
             Some(Json::Array(kinds)) => kinds
@@ -48,12 +48,12 @@ impl<'s> Expected<'s> {
             kind => kind.and_then(Json::as_str),
         };
         match kind {
-            Some("object") => Expected::Table(schema),
-            Some("array") => Expected::List(schema),
-            Some("integer") => Expected::Integer,
-            Some("boolean") => Expected::Truth,
-            Some("string") => Expected::Text,
-            _ => Expected::Anything,
+            Some("object") => Expectation::Table(schema),
+            Some("array") => Expectation::List(schema),
+            Some("integer") => Expectation::Integer,
+            Some("boolean") => Expectation::Truth,
+            Some("string") => Expectation::Text,
+            _ => Expectation::Anything,
         }
     }
 }

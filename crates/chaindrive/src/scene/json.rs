@@ -7,7 +7,7 @@ use jsonc_parser::common::Ranged;
 use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
 
 use super::error::Problem;
-use super::place::{Lines, Place};
+use super::text_span::{Lines, TextSpan};
 use super::tree::{Node, Value};
 
 impl Lines<'_> {
@@ -23,7 +23,7 @@ impl Lines<'_> {
         };
         self.place(tree, &whole)?;
         // What is missing in a scene is missing everywhere in it.
-        tree.place = Some(Place::line(1));
+        tree.place = Some(TextSpan::line(1));
         Ok(())
     }
 

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use serde_json::Value as Json;
 
-use super::expected::{Expected, Reading, kind_of};
+use super::expected::{Expectation, Reading, kind_of};
 use super::path::push_step;
 use super::suggest::distance;
 use super::tree::Value;
@@ -24,23 +24,23 @@ struct Key {
     /// With entry 0 of every list on the way.
     path: String,
     name: String,
-    takes: Takes,
+    takes: ValueForm,
 }
 
 /// Values of a key, as far as they tell keys of one name apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Takes {
+enum ValueForm {
     Tables,
     /// Tables with a kind, or the bare name of one.
     Kinds,
     Others,
 }
 
-impl Takes {
+impl ValueForm {
     fn of(schema: &Json) -> Self {
-        match Expected::of(schema) {
-            Expected::Table(_) => Self::Tables,
-            Expected::Kinds(..) => Self::Kinds,
+        match Expectation::of(schema) {
+            Expectation::Table(_) => Self::Tables,
+            Expectation::Kinds(..) => Self::Kinds,
             _ => Self::Others,
         }
     }
@@ -72,7 +72,7 @@ impl Keys {
                             level,
                             path: place.clone(),
                             name: step.to_owned(),
-                            takes: Takes::of(schema.core(inner)),
+                            takes: ValueForm::of(schema.core(inner)),
                         });
                     }
                     next.push((place, inner));
@@ -118,14 +118,14 @@ const FIRST: &str = "0";
 
 /// Keys of a table, of all members of a family, or the entry of a list.
 fn steps(schema: &Json) -> Vec<(&str, &Json)> {
-    match Expected::of(schema) {
-        Expected::Table(table) => keys_of(table).collect(),
-        Expected::List(list) => list
+    match Expectation::of(schema) {
+        Expectation::Table(table) => keys_of(table).collect(),
+        Expectation::List(list) => list
             .get("items")
             .map(|it| (FIRST, it))
             .into_iter()
             .collect(),
-        Expected::Kinds(members, _) => members
+        Expectation::Kinds(members, _) => members
             .iter()
             .filter(|member| kind_of(member).is_some())
             .flat_map(keys_of)

@@ -1,4 +1,4 @@
-//! How large a scene may be: bounds that hold before a text is taken apart.
+//! Limits on the size of a scene, checked before its text is parsed.
 //!
 //! A tree is built, copied and dropped by recursion, and every value of a text takes some hundred bytes
 //! on the way to a drive. Both are therefore bounded by counting, before anything is built.
@@ -10,7 +10,7 @@ use toml_parser::lexer::TokenKind;
 
 use super::error::Problem;
 use super::path::steps;
-use super::place::Place;
+use super::text_span::TextSpan;
 
 /// Largest text \[bytes\] that is read: room for the tables of a measured drive, not for a film.
 const LARGEST: u64 = 16 << 20;
@@ -70,10 +70,10 @@ pub(crate) fn check_toml(text: &str) -> Result<(), Problem> {
             _ => {}
         }
         if brackets + dots > DEEPEST {
-            return Err(too_deep("", Some(Place::line(line))));
+            return Err(too_deep("", Some(TextSpan::line(line))));
         }
         if values > MOST_VALUES {
-            return Err(too_many(Some(Place::line(line))));
+            return Err(too_many(Some(TextSpan::line(line))));
         }
     }
     Ok(())
@@ -98,12 +98,12 @@ pub(crate) fn check_path(path: &str) -> Result<(), Problem> {
     Err(too_deep(&format!("{}…", begin.join(".")), None))
 }
 
-pub(crate) fn too_deep(path: &str, place: Option<Place>) -> Problem {
+pub(crate) fn too_deep(path: &str, place: Option<TextSpan>) -> Problem {
     let message = format!("nested deeper than {DEEPEST} levels");
     Problem::new(path, place, message).hint("no key of a scene lies that deep")
 }
 
-fn too_many(place: Option<Place>) -> Problem {
+fn too_many(place: Option<TextSpan>) -> Problem {
     let message = format!("more than {MOST_VALUES} values");
     Problem::new("", place, message).hint("give tables and measured profiles with fewer points")
 }

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};
 use toml_edit::{DocumentMut, Item};
 
-use super::expected::{Expected, Reading, kind_of};
+use super::expected::{Expectation, Reading, kind_of};
 use super::path::steps;
 use super::resolve::{self, Assumption};
 use super::schema::{EVERY, STEPPING_KEYS, SceneText, TOLERANCE, UNTIL, Version};
@@ -22,10 +22,10 @@ const EMPTY: &str = "not given";
 
 /// A scene with everything that it leaves open filled in.
 #[derive(Clone, Debug)]
-pub(crate) struct Resolved {
+pub(crate) struct ResolvedScene {
     /// The values, in SI units, in the order of the schema.
     pub(crate) values: Map<String, Json>,
-    /// Where the values at these places come from; they hold for all that lies below.
+    /// Sources of values by path; each holds for all that lies below its path.
     remarks: HashMap<String, String>,
     /// SI units of quantities.
     pub(crate) units: HashMap<String, &'static str>,
@@ -49,13 +49,13 @@ impl Scene {
     /// # Errors
     /// As [`Scene::drive`].
     pub fn resolved(&self) -> Result<Self, SceneError> {
-        let resolved = Resolved::of(self)?;
+        let resolved = ResolvedScene::of(self)?;
         Self::from_toml(&resolved.text(), &self.name)
     }
 
     /// The same with other settings of the run.
     pub(crate) fn resolved_with(&self, run: Map<String, Json>) -> Result<Self, SceneError> {
-        let mut resolved = Resolved::of(self)?;
+        let mut resolved = ResolvedScene::of(self)?;
         resolved.settle_on(run);
         Self::from_toml(&resolved.text(), &self.name)
     }
@@ -65,11 +65,11 @@ impl Scene {
     /// # Errors
     /// As [`Scene::drive`].
     pub fn assumed(&self) -> Result<Vec<String>, SceneError> {
-        Ok(Resolved::of(self)?.assumed())
+        Ok(ResolvedScene::of(self)?.assumed())
     }
 }
 
-impl Resolved {
+impl ResolvedScene {
     /// # Errors
     /// As [`Scene::drive`].
     pub(crate) fn of(scene: &Scene) -> Result<Self, SceneError> {
@@ -203,7 +203,7 @@ impl Resolved {
         }
     }
 
-    /// Unit and remark of a value, as a comment behind it.
+    /// Unit and remark of a value, as a comment after it.
     fn comment(&self, place: &str, value: &Json) -> String {
         let first = if value.is_array() {
             below(place, "0")
@@ -225,7 +225,7 @@ impl Resolved {
         }
     }
 
-    /// Where a value comes from: its own remark, or that of what it is a part of.
+    /// Source of a value: its own remark, or that of the table it belongs to.
     pub(crate) fn remark(&self, place: &str) -> Option<&str> {
         let mut place = place;
         loop {
@@ -291,8 +291,8 @@ const IN_ORDER: [&str; 4] = ["Film", "Bearing", "ShaftDrag", "Lateral"];
 /// Brings the keys of such laws into order.
 fn in_order(value: &mut Json, schema: &Json, reading: &Reading<'_>) {
     let core = reading.core(schema);
-    let table = match Expected::of(core) {
-        Expected::Kinds(members, _) => {
+    let table = match Expectation::of(core) {
+        Expectation::Kinds(members, _) => {
             let of_kind = |member: &&Json| kind_of(member) == value["kind"].as_str();
             members.iter().find(of_kind).unwrap_or(core)
         }
@@ -386,7 +386,7 @@ fn annotate(
     }
 }
 
-/// The comments behind values of a TOML text, by place.
+/// The comments after values of a TOML text, by place.
 fn comments(text: &str) -> HashMap<String, String> {
     let mut found = HashMap::new();
     if !is_json(text)

@@ -6,14 +6,14 @@ use toml_edit::{Item, TableLike, Value as Toml};
 use super::error::Problem;
 use super::limits;
 use super::path::{push_step, steps};
-use super::place::{Lines, Place};
-use crate::plain::is_command;
-use crate::plain::shorten;
+use super::text_span::{Lines, TextSpan};
+use crate::terminal_text::is_command;
+use crate::terminal_text::shorten;
 
 /// A value and its place in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Node {
-    pub(crate) place: Option<Place>,
+    pub(crate) place: Option<TextSpan>,
     pub(crate) value: Value,
 }
 
@@ -34,7 +34,7 @@ pub(crate) enum Value {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Entry {
     pub(crate) key: String,
-    pub(crate) place: Option<Place>,
+    pub(crate) place: Option<TextSpan>,
     pub(crate) node: Node,
 }
 
@@ -63,7 +63,7 @@ impl Node {
 
     fn find_control_characters(&self, path: &str, found: &mut Vec<Problem>) {
         let speaks = |text: &str| text.contains(is_command);
-        let problem = |path: &str, place: Option<Place>, what: &str, text: &str| {
+        let problem = |path: &str, place: Option<TextSpan>, what: &str, text: &str| {
             let message = format!("{what} \"{}\" has control characters", shorten(text));
             Problem::new(path, place, message).hint("leave them out")
         };
@@ -112,7 +112,7 @@ impl Node {
                 format!("not TOML: {}", one_line(error.message())),
             )
         })?;
-        Ok(lines.table(document.as_table(), Some(Place::line(1))))
+        Ok(lines.table(document.as_table(), Some(TextSpan::line(1))))
     }
 
     /// Parses JSON.
@@ -122,11 +122,11 @@ impl Node {
             let message = error.to_string();
             let (line, column) = (error.line(), error.column());
             if message.starts_with("recursion limit") {
-                return limits::too_deep("", Some(Place::line(line)));
+                return limits::too_deep("", Some(TextSpan::line(line)));
             }
             let message = message.split(" at line").next().unwrap_or_default();
             let columns = (column > 0).then_some([column, column + 1]);
-            let place = Place { line, columns };
+            let place = TextSpan { line, columns };
             Problem::new("", Some(place), format!("not JSON: {message}"))
         })?;
         let mut tree = Self::from_json(&json);
@@ -278,7 +278,7 @@ impl Node {
 
     /// Follows a path as far as it leads: the path in its written form, with entries of lists by
     /// index, and the place of the last value on it.
-    pub(crate) fn locate(&self, path: &str) -> (String, Option<Place>) {
+    pub(crate) fn locate(&self, path: &str) -> (String, Option<TextSpan>) {
         let (mut node, mut place) = (Some(self), None);
         let mut written = String::new();
         for step in steps(path) {
@@ -311,7 +311,7 @@ fn one_line(message: &str) -> String {
 }
 
 impl Lines<'_> {
-    fn table(&self, table: &dyn TableLike, place: Option<Place>) -> Node {
+    fn table(&self, table: &dyn TableLike, place: Option<TextSpan>) -> Node {
         let entry = |(key, item): (&str, &Item)| {
             let span = table
                 .key(key)
@@ -330,7 +330,7 @@ impl Lines<'_> {
         }
     }
 
-    fn item(&self, item: &Item, place: Option<Place>) -> Node {
+    fn item(&self, item: &Item, place: Option<TextSpan>) -> Node {
         let place = item.span().map(|span| self.at(span)).or(place);
         match item {
             Item::None => Node {
@@ -352,7 +352,7 @@ impl Lines<'_> {
         }
     }
 
-    fn value(&self, value: &Toml, place: Option<Place>) -> Node {
+    fn value(&self, value: &Toml, place: Option<TextSpan>) -> Node {
         let place = value.span().map(|span| self.at(span)).or(place);
         let value = match value {
             Toml::String(text) => Value::Text(text.value().clone()),

@@ -9,14 +9,14 @@ use std::collections::{HashMap, HashSet};
 use serde_json::{Map, Value as Json};
 
 use super::error::{Problem, Problems};
-use super::expected::{Expected, Reading, kind_of, request};
+use super::expected::{Expectation, Reading, kind_of, request};
 use super::keys::Keys;
 use super::path::push_step;
 use super::run_in::RunIn;
 use super::schema::Version;
 use super::suggest::{did_you_mean, distance, nearest, one_of};
 use super::tree::{Entry, Node, Value};
-use crate::plain::shorten;
+use crate::terminal_text::shorten;
 use chaindrive_quantities::{CONTACT_STIFFNESS, Dimension, Range};
 
 /// Checks `tree` against `schema` and normalises it: quantities become SI numbers, bare names of
@@ -98,26 +98,26 @@ impl<'s> Validator<'s> {
     fn visit(&mut self, node: &mut Node, schema: &'s Json, path: &str, exponent: Option<f64>) {
         let core = self.schema.core(schema);
         let before = self.problems.count();
-        match Expected::of(core) {
-            Expected::Table(core) => self.table(node, core, path, None),
-            Expected::List(core) => self.list(node, core, path, exponent),
-            Expected::Kinds(members, unnamed) => self.kinds(node, members, unnamed, path),
-            Expected::Words(words) => self.word(node, &words, path),
-            Expected::Quantity(core, dimension) => {
+        match Expectation::of(core) {
+            Expectation::Table(core) => self.table(node, core, path, None),
+            Expectation::List(core) => self.list(node, core, path, exponent),
+            Expectation::Kinds(members, unnamed) => self.kinds(node, members, unnamed, path),
+            Expectation::Words(words) => self.word(node, &words, path),
+            Expectation::Quantity(core, dimension) => {
                 self.quantity(node, core, dimension, path, exponent);
             }
-            Expected::Integer => self.integer(node, path),
-            Expected::Truth => {
+            Expectation::Integer => self.integer(node, path),
+            Expectation::Truth => {
                 if !matches!(node.value, Value::Truth(_)) {
                     self.wrong_type(node, path, "true or false");
                 }
             }
-            Expected::Text => {
+            Expectation::Text => {
                 if !matches!(node.value, Value::Text(_)) {
                     self.wrong_type(node, path, "a text");
                 }
             }
-            Expected::RunIn => match &node.value {
+            Expectation::RunIn => match &node.value {
                 Value::Text(text) => {
                     if let Err(problem) = text.parse::<RunIn>() {
                         let hint = "write a time such as \"0.5 s\", turns such as \"5 turns of camshaft\", or \"auto\"";
@@ -127,7 +127,7 @@ impl<'s> Validator<'s> {
                 Value::Integer(_) | Value::Float(_) => {}
                 _ => self.wrong_type(node, path, "a time, turns of a sprocket, or \"auto\""),
             },
-            Expected::Anything => {}
+            Expectation::Anything => {}
         }
         if self.problems.count() == before {
             self.range(node, core, path);
@@ -227,12 +227,19 @@ impl<'s> Validator<'s> {
     fn meant(&self, entry: &Entry, property: &'s Json, schema: &'s Json) -> Option<String> {
         number(&entry.node)?;
         let all = schema.get("properties")?.as_object()?;
-        let expected = |schema| Expected::of(self.schema.core(schema));
-        if !matches!(expected(property), Expected::Table(_) | Expected::Kinds(..)) {
+        let expected = |schema| Expectation::of(self.schema.core(schema));
+        if !matches!(
+            expected(property),
+            Expectation::Table(_) | Expectation::Kinds(..)
+        ) {
             return None;
         }
-        let takes_numbers =
-            |schema| matches!(expected(schema), Expected::Quantity(..) | Expected::Integer);
+        let takes_numbers = |schema| {
+            matches!(
+                expected(schema),
+                Expectation::Quantity(..) | Expectation::Integer
+            )
+        };
         let fitting = all.iter().filter(|(_, schema)| takes_numbers(schema));
         let keys: Vec<&str> = fitting.map(|(key, _)| key.as_str()).collect();
         nearest(&entry.key, &keys).map(str::to_owned)

@@ -4,9 +4,9 @@ use std::time::{Duration, Instant};
 
 use chaindrive_mechanics::{Assembled, Course, Input, Observation};
 
-use super::snapshot::Before;
+use super::snapshot::PreviousState;
 use super::{Moving, STEPS_PER_LOOK, Simulation};
-use crate::patience::LOOK;
+use crate::interruptible::LOOK;
 use crate::{Channel, SimulationError, Stepping};
 
 /// Inputs that can be set while a drive moves, by the names of the scene.
@@ -34,7 +34,7 @@ pub enum Control {
     Parameter(String),
 }
 
-/// Whether somebody may set something at the time that is stepped to.
+/// Changes that may come at the time that is stepped to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Changes {
     /// They may: the state before the last step is kept.
@@ -130,7 +130,7 @@ impl Simulation {
                     self.before = None;
                 } else if state.t + stepper.next_step() >= time {
                     self.gather();
-                    self.before = Some(Box::new(Before::of(self)));
+                    self.before = Some(Box::new(PreviousState::of(self)));
                 }
                 self.moving.keep_forces_for(time);
                 self.moving.step()?;
@@ -187,7 +187,7 @@ impl Simulation {
             }
         }
         let time = self.zero() + time;
-        // Somebody may yet go back behind this plan.
+        // Somebody may yet go back to a time before this plan.
         if let Some(before) = &mut self.before {
             before.plan(time, input, course);
         }

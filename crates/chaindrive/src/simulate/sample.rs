@@ -2,10 +2,10 @@
 
 use chaindrive_mechanics::{Assembled, ContactEvent, EventKinds, Impact, Observation};
 
-use super::ended::count_from;
+use super::ended_contacts::count_from;
 use super::live::Changes;
 use super::{Arc, Simulation};
-use crate::patience::LOOK;
+use crate::interruptible::LOOK;
 use crate::{Run, SimulationError};
 
 /// All that a sample says, on the clock of the drive.
@@ -23,7 +23,7 @@ impl Simulation {
         self.hand_out_ended();
     }
 
-    /// Goes on to a time \[s\] and takes a sample there; with the drive as it stood before the last step, where one is wanted.
+    /// Advances to a time \[s\] and takes a sample there; on request with the drive as it stood before the last step.
     pub(crate) fn take_sample(
         &mut self,
         time: f64,
@@ -71,7 +71,7 @@ impl Simulation {
         }
     }
 
-    /// Goes on to a time \[s\] and reads everything off the drive there, for one who does not go back.
+    /// Advances to a time \[s\] and reads everything there; a change before that time is no longer possible.
     pub(crate) fn look(
         &mut self,
         time: f64,
@@ -97,7 +97,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Whether samples are there that nobody has asked for yet.
+    /// Whether samples taken in advance are still to be handed out.
     pub(crate) fn has_samples_ahead(&self) -> bool {
         !self.ahead.is_empty()
     }

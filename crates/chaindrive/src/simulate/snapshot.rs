@@ -10,7 +10,7 @@ use chaindrive_mechanics::{
 use serde::{Deserialize, Serialize};
 
 use super::{Moving, Simulation};
-use crate::seal::{Sealed, opened, sealed};
+use crate::seal::{SealedValue, opened, sealed};
 use crate::{SealError, SimulationError};
 
 /// A simulation as it was at a moment, to the last bit: contacts, windows and the time stepping with its memory.
@@ -38,11 +38,11 @@ use crate::{SealError, SimulationError};
 pub struct Snapshot {
     /// Of the simulation, see [`Simulation::fingerprint`].
     fingerprint: u32,
-    moving: Remembered,
+    moving: DriveMemory,
     /// Handed out at the last reading, and since then.
     ended: [Vec<ContactEvent>; 2],
     struck: [Vec<Impact>; 2],
-    before: Option<Before>,
+    before: Option<PreviousState>,
     /// Time reached \[s\].
     time: f64,
     read: f64,
@@ -53,25 +53,25 @@ pub struct Snapshot {
 
 /// State of a drive in motion that does not follow from the drive.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Remembered {
+struct DriveMemory {
     system: SystemMemory,
     state: State,
     stepper: StepperMemory<Record>,
 }
 
-/// The drive before the last step: the way back for a change at a time within it.
+/// State before the last step, kept so that a change at a time within that step can begin there.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Before {
-    moving: Remembered,
+pub(super) struct PreviousState {
+    moving: DriveMemory,
     /// Contacts and impacts that had ended since the last reading.
     pub(super) gathered: [usize; 2],
-    /// Time of the first event behind it \[s\].
+    /// Time of the first event after it \[s\].
     event: f64,
     /// Plans made since then.
     planned: Vec<(f64, Input, Course)>,
 }
 
-impl Before {
+impl PreviousState {
     /// The drive as it stands now, with what ended until now taken in.
     pub(super) fn of(simulation: &Simulation) -> Self {
         let moving = &simulation.moving;
@@ -108,7 +108,7 @@ pub enum SnapshotError {
     State(#[from] IntegrationError),
 }
 
-impl Sealed for Snapshot {
+impl SealedValue for Snapshot {
     const KIND: &'static str = "snapshot";
 }
 
@@ -178,13 +178,13 @@ impl Simulation {
     }
 
     /// The drive as it stood before the last step.
-    pub(super) fn as_before(&self, before: &Before) -> Result<Moving, SnapshotError> {
+    pub(super) fn as_before(&self, before: &PreviousState) -> Result<Moving, SnapshotError> {
         self.recalled(&before.moving)
     }
 
     /// Goes back to before the last step, with what was planned since then.
-    pub(super) fn go_back(&mut self, before: Before) -> Result<(), SimulationError> {
-        let Before {
+    pub(super) fn go_back(&mut self, before: PreviousState) -> Result<(), SimulationError> {
+        let PreviousState {
             moving: then,
             gathered: [contacts, impacts],
             event,
@@ -206,7 +206,7 @@ impl Simulation {
     }
 
     /// The drive in motion that remembers what it did then.
-    fn recalled(&self, then: &Remembered) -> Result<Moving, SnapshotError> {
+    fn recalled(&self, then: &DriveMemory) -> Result<Moving, SnapshotError> {
         let mut system = self.assembled.system.clone();
         system.set_onset_depth(self.moving.system.onset_depth());
         system.log_events(self.events);
@@ -238,8 +238,8 @@ impl Simulation {
 
 impl Moving {
     /// Goes back to what it remembered, since when nothing was set.
-    fn take_back(&mut self, then: Remembered) -> Result<(), SnapshotError> {
-        let Remembered {
+    fn take_back(&mut self, then: DriveMemory) -> Result<(), SnapshotError> {
+        let DriveMemory {
             system,
             state,
             stepper,
@@ -250,8 +250,8 @@ impl Moving {
         Ok(())
     }
 
-    fn remembered(&self) -> Remembered {
-        Remembered {
+    fn remembered(&self) -> DriveMemory {
+        DriveMemory {
             system: self.system.memory(),
             state: self.state.clone(),
             stepper: self.stepper.memory(),

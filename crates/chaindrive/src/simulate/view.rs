@@ -49,7 +49,7 @@ impl View {
         &self.values[self.range(channel)]
     }
 
-    /// Entries of all channels, one behind the other.
+    /// Entries of all channels, one after the other.
     pub fn all(&self) -> &[f64] {
         &self.values
     }

@@ -4,7 +4,7 @@
 //! period: a mean over m + ½ periods of amplitude A errs by A/(π m), where the mean over m periods does not err at all. So samples go into
 //! blocks of whole periods, and what fills none is left out once there are three. When there are many blocks, neighbours are joined.
 //!
-//! A sample stands for the time from half a step before it to half a step behind it. Where a block ends within, both get their share.
+//! A sample stands for the time from half a step before it to half a step after it. Where a block ends within, both get their share.
 
 use serde::{Deserialize, Serialize};
 
@@ -59,7 +59,7 @@ pub(super) struct Moments {
 }
 
 impl Blocks {
-    /// Nothing yet, of samples at an interval \[s\]; `period` \[s\]: of what repeats, infinite where nothing does.
+    /// Empty statistics for samples at an interval \[s\]; `period` \[s\] of the slowest forcing, infinite where nothing repeats.
     pub(crate) fn new(every: f64, period: f64) -> Self {
         let periods = (SAMPLES * every / period).ceil().max(1.0);
         Self {

@@ -8,7 +8,7 @@ use crate::rating::SprocketDuty;
 
 /// A quantity over the samples.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Course {
+pub struct SampleStatistics {
     sum: f64,
     count: u64,
     /// Least sample.
@@ -17,7 +17,7 @@ pub struct Course {
     pub greatest: f64,
 }
 
-impl Default for Course {
+impl Default for SampleStatistics {
     fn default() -> Self {
         Self {
             sum: 0.0,
@@ -28,7 +28,7 @@ impl Default for Course {
     }
 }
 
-impl Course {
+impl SampleStatistics {
     fn push(&mut self, value: f64) {
         self.sum += value;
         self.count += 1;
@@ -49,14 +49,14 @@ impl Course {
 
 /// Force on a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Bearing {
-    x: Course,
-    y: Course,
+pub struct BearingForce {
+    x: SampleStatistics,
+    y: SampleStatistics,
     /// Magnitude \[N\].
-    pub magnitude: Course,
+    pub magnitude: SampleStatistics,
 }
 
-impl Bearing {
+impl BearingForce {
     fn push(&mut self, x: f64, y: f64) {
         self.x.push(x);
         self.y.push(y);
@@ -72,7 +72,7 @@ impl Bearing {
 
 /// A sprocket over the samples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SprocketCourse {
+pub struct SprocketStatistics {
     /// Its name.
     pub name: String,
     /// Its chain, by index.
@@ -80,20 +80,20 @@ pub struct SprocketCourse {
     /// Its teeth.
     pub teeth: u32,
     /// Speed \[rad/s\].
-    pub speed: Course,
+    pub speed: SampleStatistics,
     /// Torque of the chain \[N m\].
-    pub torque: Course,
+    pub torque: SampleStatistics,
     /// Power that the chain gives it \[W\].
-    pub power: Course,
+    pub power: SampleStatistics,
     /// Force of the chain, which its bearings bear.
-    pub force: Bearing,
+    pub force: BearingForce,
     /// Angle beyond that of an exact ratio to the sprocket that leads its chain \[rad\]: the transmission error.
-    pub lag: Course,
+    pub lag: SampleStatistics,
     /// The sprocket that leads, by index, and the exact ratio to it.
     leader: (usize, f64),
 }
 
-impl SprocketCourse {
+impl SprocketStatistics {
     /// Means over the samples, as the rating of its chain asks for them.
     pub(super) fn duty(&self) -> SprocketDuty {
         SprocketDuty {
@@ -111,15 +111,15 @@ impl SprocketCourse {
     }
 }
 
-/// What chains touch, over the samples.
+/// Loads of the bodies that chains touch, over the samples.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bodies {
     /// Sprockets.
-    pub sprockets: Vec<SprocketCourse>,
+    pub sprockets: Vec<SprocketStatistics>,
     /// Guides: name, and force of the chain.
-    pub guides: Vec<(String, Bearing)>,
+    pub guides: Vec<(String, BearingForce)>,
     /// Tensioners: name, unit of the coordinate (m or rad), coordinate, and push \[N, or N m of an arm without a plunger\].
-    pub tensioners: Vec<(String, String, [Course; 2])>,
+    pub tensioners: Vec<(String, String, [SampleStatistics; 2])>,
 }
 
 impl Bodies {
@@ -135,26 +135,30 @@ impl Bodies {
         let guides = drive.guides.iter().map(|it| it.name.clone());
         let tensioners = drive.tensioners.iter().map(|it| {
             let unit = it.carrier.coordinate_unit();
-            (it.name.clone(), unit.to_owned(), [Course::default(); 2])
+            (
+                it.name.clone(),
+                unit.to_owned(),
+                [SampleStatistics::default(); 2],
+            )
         });
         let sprocket = |(index, it): (usize, &chaindrive_mechanics::Sprocket)| {
             let mut chains = drive.chains.iter();
             let chain = chains.position(|placed| placed.sprockets.contains(&index));
-            SprocketCourse {
+            SprocketStatistics {
                 name: it.name.clone(),
                 chain: chain.unwrap_or(0),
                 teeth: it.gap.teeth,
-                speed: Course::default(),
-                torque: Course::default(),
-                power: Course::default(),
-                force: Bearing::default(),
-                lag: Course::default(),
+                speed: SampleStatistics::default(),
+                torque: SampleStatistics::default(),
+                power: SampleStatistics::default(),
+                force: BearingForce::default(),
+                lag: SampleStatistics::default(),
                 leader: leader(drive, index),
             }
         };
         Self {
             sprockets: sprockets.map(sprocket).collect(),
-            guides: guides.map(|name| (name, Bearing::default())).collect(),
+            guides: guides.map(|name| (name, BearingForce::default())).collect(),
             tensioners: tensioners.collect(),
         }
     }

@@ -4,7 +4,7 @@ use chaindrive_mechanics::Impact;
 use hdrhistogram::Histogram;
 use serde::{Deserialize, Serialize};
 
-use super::{COUNTS_PER_NEWTON, counted, histogram};
+use super::{COUNTS_PER_NEWTON, histogram, value_counts};
 use crate::Simulation;
 
 /// Impacts on one sprocket: the first contacts of rollers that came to it, each once a passage.
@@ -16,11 +16,11 @@ pub struct ImpactStatistics {
     pub count: u64,
     /// Largest force of all \[N\].
     pub greatest: f64,
-    #[serde(with = "counted")]
+    #[serde(with = "value_counts")]
     forces: Histogram<u64>,
-    #[serde(with = "counted")]
+    #[serde(with = "value_counts")]
     impulses: Histogram<u64>,
-    #[serde(with = "counted")]
+    #[serde(with = "value_counts")]
     speeds: Histogram<u64>,
 }
 
@@ -54,7 +54,7 @@ impl ImpactStatistics {
             ),
             (&mut self.speeds, impact.speed * COUNTS_PER_METRE_A_SECOND),
         ] {
-            counted::note(histogram, value);
+            value_counts::note(histogram, value);
         }
     }
 
@@ -72,7 +72,7 @@ impl ImpactStatistics {
         }
     }
 
-    /// Whether the impacts are enough to tell a quantile above the median: one of them at least lies beyond it.
+    /// Whether there are impacts enough for a quantile above the median: at least one lies beyond it.
     ///
     /// ```text
     /// n (1 − q) ≥ 1

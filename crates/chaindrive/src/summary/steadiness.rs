@@ -11,7 +11,7 @@
 //!
 //! t is Student's of (g − 1)/√τ degrees of freedom. What repeats makes all blocks alike, whatever part of a period the record ends with. κ is 1, and
 //! 1.5 for quantiles, whose few blocks scatter less than they err. Δ is the drift of yᵢ from one half of the record to the other: what dies out goes
-//! on by about as much behind it. The grain is what one sample more or less makes of a quantile. The start, of the mean alone, is what it
+//! on by about as much after it. The grain is what one sample more or less makes of a quantile. The start, of the mean alone, is what it
 //! moves by when the start of the run is cut off. The least is a share of the scale.
 //!
 //! A block or two may hold all that lies beyond a quantile. To leave one of a few blocks out then moves the quantile far, g − 1 times as far its yᵢ, and
@@ -43,9 +43,9 @@ const OF_QUANTILES: f64 = 1.5;
 const CORRELATION: [f64; 2] = [-0.5, 0.9];
 const MANY: usize = 8;
 
-/// A statistic, and how well it is known.
+/// A statistic with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Known {
+pub struct ConfidenceInterval {
     /// Its value.
     pub value: f64,
     /// Half width of its 95 % interval; NaN below three periods, and of a quantile whose interval would be wider than all samples lie apart.
@@ -56,13 +56,13 @@ pub struct Known {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steadiness {
     /// Mean.
-    pub mean: Known,
+    pub mean: ConfidenceInterval,
     /// Standard deviation.
-    pub deviation: Known,
+    pub deviation: ConfidenceInterval,
     /// Value below which 1 % of the time is.
-    pub p1: Known,
+    pub p1: ConfidenceInterval,
     /// The same of 99 %.
-    pub p99: Known,
+    pub p99: ConfidenceInterval,
     /// Mean without what comes before the steady state.
     pub settled: f64,
     /// When that ends \[s\].
@@ -77,7 +77,7 @@ impl Blocks {
         let found = self.statistics()?;
         let whole = self.whole();
         if whole.len() < LEAST {
-            let known = |k: usize| Known {
+            let known = |k: usize| ConfidenceInterval {
                 value: found.values[k],
                 half_width: f64::NAN,
             };
@@ -112,7 +112,7 @@ impl Blocks {
             let of_record = parts.iter().map(|part| part * part).sum::<f64>().sqrt();
             let least = LEAST_WIDTH[k] * scale;
             let tells_nothing = k >= 2 && of_record > range.max(least);
-            Known {
+            ConfidenceInterval {
                 value: found.values[k],
                 half_width: if tells_nothing {
                     f64::NAN
@@ -136,7 +136,7 @@ impl Blocks {
         self.moments(block).map_or([f64::NAN; 4], |it| it.values)
     }
 
-    /// How much one statistic of the blocks scatters.
+    /// Scatter of one statistic between blocks.
     fn spread(&self, whole: &[&Block], all: &Block, values: [f64; 4], k: usize) -> Spread {
         let g = whole.len() as f64;
         // yᵢ = g θ − (g − 1) θ₍ᵢ₎
@@ -198,7 +198,7 @@ pub(crate) fn drift(values: &[f64]) -> (f64, f64) {
     (0.5 * n * slope, 0.5 * n * certain)
 }
 
-/// How well a statistic is known.
+/// Uncertainty of a statistic.
 struct Spread {
     /// Its standard error, and degrees of freedom.
     error: f64,
@@ -303,14 +303,14 @@ mod tests {
         blocks.steadiness(scale).unwrap()
     }
 
-    const STATISTICS: [fn(&Steadiness) -> Known; 4] =
+    const STATISTICS: [fn(&Steadiness) -> ConfidenceInterval; 4] =
         [|it| it.mean, |it| it.deviation, |it| it.p1, |it| it.p99];
 
     /// Shares of the intervals that hold what is true, their median half widths, and the 95 % quantiles of the true errors.
     fn judged(true_values: [f64; 4], found: impl Iterator<Item = Steadiness>) -> [[f64; 3]; 4] {
         let found: Vec<Steadiness> = found.collect();
         std::array::from_fn(|k| {
-            let known: Vec<Known> = found.iter().map(STATISTICS[k]).collect();
+            let known: Vec<ConfidenceInterval> = found.iter().map(STATISTICS[k]).collect();
             let mut errors: Vec<f64> = known
                 .iter()
                 .map(|it| (it.value - true_values[k]).abs())

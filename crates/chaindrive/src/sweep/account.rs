@@ -22,14 +22,14 @@ use crate::{
 /// A statistic or a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
-pub enum Quantity {
+pub enum ResultQuantity {
     /// One account of the whole run.
     Statistic(Statistic),
     /// One account a sample.
     Channel(Channel),
 }
 
-impl Quantity {
+impl ResultQuantity {
     /// The quantity of a name.
     pub fn from_name(name: &str) -> Option<Self> {
         let statistic = Statistic::ALL.iter().find(|known| known.name() == name);
@@ -73,13 +73,13 @@ impl Quantity {
     }
 }
 
-impl From<Quantity> for String {
-    fn from(quantity: Quantity) -> Self {
+impl From<ResultQuantity> for String {
+    fn from(quantity: ResultQuantity) -> Self {
         quantity.name().to_owned()
     }
 }
 
-impl TryFrom<String> for Quantity {
+impl TryFrom<String> for ResultQuantity {
     type Error = String;
 
     fn try_from(name: String) -> Result<Self, String> {
@@ -106,7 +106,7 @@ pub struct Account {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// Which.
-    pub quantity: Quantity,
+    pub quantity: ResultQuantity,
     /// SI unit in the drive of the variant.
     pub unit: String,
     /// Values, (time, labels) or less, flat.
@@ -115,12 +115,12 @@ pub struct Entry {
 
 /// The channels that are kept beside the statistics, if any.
 #[derive(Default)]
-struct Kept {
+struct KeptChannels {
     wanted: bool,
     recording: Recording,
 }
 
-impl Sink for Kept {
+impl Sink for KeptChannels {
     type Error = SimulationError;
 
     fn begin(
@@ -216,9 +216,9 @@ impl Account {
         shared: Option<&Choice>,
         stop: &AtomicBool,
     ) -> Result<Self, RunError<SimulationError>> {
-        let mut memory = Kept {
+        let mut memory = KeptChannels {
             wanted: !request.record.is_empty(),
-            ..Kept::default()
+            ..KeptChannels::default()
         };
         let stopped = || stop.load(Ordering::Relaxed);
         let report = execute_by(shared, request, &mut memory, &stopped)?;
@@ -253,7 +253,7 @@ impl Account {
                 && (choice.is_some() || !statistic.is_of_a_choice());
             if wanted {
                 account.entries.push(Entry {
-                    quantity: Quantity::Statistic(statistic),
+                    quantity: ResultQuantity::Statistic(statistic),
                     unit: statistic.unit().to_owned(),
                     values: statistic.read(simulation, summary, choice),
                 });
@@ -267,7 +267,7 @@ impl Account {
                 account.labels.push((name.into(), labels));
             }
             account.entries.push(Entry {
-                quantity: Quantity::Channel(column.channel),
+                quantity: ResultQuantity::Channel(column.channel),
                 unit: column.channel.unit_in(simulation.system()),
                 values: column.values,
             });
@@ -305,7 +305,7 @@ mod tests {
         let again = Account::attempt(&request, Some(&choice), &never)
             .unwrap()
             .unwrap();
-        let measured = |it: &&Entry| matches!(it.quantity, Quantity::Statistic(statistic) if statistic.is_measured());
+        let measured = |it: &&Entry| matches!(it.quantity, ResultQuantity::Statistic(statistic) if statistic.is_measured());
         for (one, other) in own.entries.iter().zip(&again.entries) {
             let bits = |entry: &Entry| {
                 entry

@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use super::Outcome;
 use crate::SealError;
-use crate::seal::{Sealed, opened, sealed};
+use crate::seal::{SealedValue, opened, sealed};
 
 /// Counts of variants that have ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Finished {
+pub struct VariantCounts {
     /// Variants that reached their end.
     pub done: usize,
     /// Variants that failed.
@@ -17,7 +17,7 @@ pub struct Finished {
     pub distrusted: usize,
 }
 
-impl Finished {
+impl VariantCounts {
     /// The counts of outcomes.
     pub fn of<'a>(outcomes: impl IntoIterator<Item = &'a Outcome>) -> Self {
         let mut counts = Self::default();
@@ -40,7 +40,7 @@ impl Finished {
     }
 }
 
-impl std::ops::AddAssign for Finished {
+impl std::ops::AddAssign for VariantCounts {
     fn add_assign(&mut self, other: Self) {
         self.done += other.done;
         self.failed += other.failed;
@@ -52,12 +52,12 @@ impl std::ops::AddAssign for Finished {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
     /// Counts of the variants of the task.
-    pub finished: Finished,
+    pub finished: VariantCounts,
     /// The variants and how they ended; none where a store keeps that.
     pub outcomes: Vec<(usize, Outcome)>,
 }
 
-impl Sealed for Answer {
+impl SealedValue for Answer {
     const KIND: &'static str = "answer of a task";
 }
 

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-use super::{Finished, Sweep};
+use super::{Sweep, VariantCounts};
 use crate::record::Ending;
 use crate::zarr::Story;
 
@@ -11,7 +11,7 @@ impl Sweep {
     pub fn attributes(
         &self,
         methods: &[String],
-        finished: Finished,
+        finished: VariantCounts,
         ending: &Ending,
     ) -> Map<String, Value> {
         let scene = self.scene();

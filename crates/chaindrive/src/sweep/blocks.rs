@@ -13,14 +13,14 @@ const LARGEST: usize = 32;
 
 /// The blocks of a sweep.
 #[derive(Debug)]
-pub(super) struct Blocks {
+pub(super) struct SweepBlocks {
     /// Block of each variant.
     of: Vec<u32>,
     /// Variants of each block, in their order.
     members: Vec<Vec<u32>>,
 }
 
-impl Blocks {
+impl SweepBlocks {
     /// Variants that differ in numbers only, 32 at most and in their order. What is no number tells variants apart, such as a model of the
     /// chain, and so does every key of `[run]`: an end or an accuracy is another question to the choice.
     #[expect(
@@ -91,7 +91,7 @@ mod tests {
             .map(|(path, it)| ((*path).to_owned(), it.clone()))
             .collect();
         let sweep = Sweep::new(&scene, &vary, &[]).unwrap();
-        let blocks = Blocks::of(&sweep);
+        let blocks = SweepBlocks::of(&sweep);
         let all = (0..blocks.members.len()).map(|block| blocks.members(block).collect());
         let all: Vec<Vec<usize>> = all.collect();
         for (block, members) in all.iter().enumerate() {

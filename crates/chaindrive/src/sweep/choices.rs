@@ -9,18 +9,18 @@ use super::{Sweep, account};
 use crate::RunError;
 use crate::execute::choice;
 use crate::precision::Choice;
-use crate::seal::Sealed;
+use crate::seal::SealedValue;
 
 /// The choice of a block; none where every variant is on its own: no accuracy is asked for, or none of them can be run.
-pub(super) type Shared = Option<Arc<Choice>>;
+pub(super) type SharedChoice = Option<Arc<Choice>>;
 
 /// The choices of a sweep that this process knows.
 #[derive(Debug, Default)]
 pub(super) struct Choices(Mutex<HashMap<usize, Arc<Cell>>>);
 
-type Cell = Mutex<Option<Shared>>;
+type Cell = Mutex<Option<SharedChoice>>;
 
-impl Sealed for Choice {
+impl SealedValue for Choice {
     const KIND: &'static str = "choice of method and step";
 }
 
@@ -29,8 +29,8 @@ impl Choices {
     pub(super) fn get<E>(
         &self,
         block: usize,
-        make: impl FnOnce() -> Result<Option<Shared>, E>,
-    ) -> Result<Option<Shared>, E> {
+        make: impl FnOnce() -> Result<Option<SharedChoice>, E>,
+    ) -> Result<Option<SharedChoice>, E> {
         let cell = Arc::clone(locked(&self.0).entry(block).or_default());
         let mut known = locked(&cell);
         if known.is_none() {
@@ -50,14 +50,14 @@ impl Choices {
     }
 }
 
-/// What a panic leaves is whole: a choice is put in when it is made.
+/// Locks also after a panic: a choice is stored only when it is complete.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Sweep {
     /// Makes the choice of a block; none if it is stopped.
-    pub(super) fn choose(&self, block: usize, stop: &AtomicBool) -> Option<Shared> {
+    pub(super) fn choose(&self, block: usize, stop: &AtomicBool) -> Option<SharedChoice> {
         let stopped = || stop.load(Ordering::Relaxed);
         for variant in self.blocks().members(block) {
             let attempt = || {

@@ -2,7 +2,7 @@
 
 use super::layout::{Layout, Region};
 use super::texts::{OPEN, TEXTS, blank};
-use super::{Account, Entry, Outcome, Quantity};
+use super::{Account, Entry, Outcome, ResultQuantity};
 
 /// The chunks of a quantity in a region, each with its place: one, or several where the array is cut along time or labels.
 ///
@@ -10,7 +10,7 @@ use super::{Account, Entry, Outcome, Quantity};
 pub(super) fn numbers(
     layout: &Layout,
     region: &Region,
-    quantity: Quantity,
+    quantity: ResultQuantity,
     outcomes: &[Outcome],
 ) -> Vec<(Vec<u64>, Vec<f64>)> {
     let axis = layout.axis(quantity);
@@ -56,7 +56,7 @@ pub(super) fn numbers(
 }
 
 /// Puts the entries of one account where their labels are.
-fn fill(account: &Account, quantity: Quantity, width: Option<&[String]>, to: &mut [f64]) {
+fn fill(account: &Account, quantity: ResultQuantity, width: Option<&[String]>, to: &mut [f64]) {
     let mut entries = account.entries.iter();
     let Some(Entry { values, .. }) = entries.find(|entry| entry.quantity == quantity) else {
         return;

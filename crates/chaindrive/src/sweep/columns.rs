@@ -1,6 +1,6 @@
 //! Figures of a variant that the report of a sweep has.
 
-use super::{Account, Quantity};
+use super::{Account, ResultQuantity};
 use crate::figure::with_digits;
 use crate::statistic::Statistic;
 
@@ -27,14 +27,14 @@ columns! {
 }
 
 impl Account {
-    /// Whether no method on the list kept the accuracy that was asked for.
+    /// Whether no method of the list kept the accuracy asked for.
     pub(super) fn misses(&self) -> bool {
         self.largest(Statistic::AccuracyKept) < 1.0
     }
 
     /// The largest entry of a statistic; NaN when there is none.
     fn largest(&self, statistic: Statistic) -> f64 {
-        let quantity = Quantity::Statistic(statistic);
+        let quantity = ResultQuantity::Statistic(statistic);
         let found = self.entries.iter().find(|it| it.quantity == quantity);
         let values = found.map_or(&[] as &[f64], |entry| &entry.values);
         values.iter().copied().fold(f64::NAN, f64::max)

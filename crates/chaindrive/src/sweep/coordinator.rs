@@ -1,13 +1,13 @@
-//! Who hands out the tasks of a sweep and takes what comes back, with the one loop of all sweeps on threads.
+//! The coordinator of a sweep: it hands out tasks and takes back results, in the one loop of all sweeps on threads.
 
 use std::sync::atomic::AtomicBool;
 
 use super::layout::Layout;
 use super::threads::on_threads;
-use super::{Answer, Finished, Go, Outcome, Progress, Sweep, SweepError, Tally, Worker};
+use super::{Answer, Go, Outcome, Progress, Sweep, SweepError, Tally, VariantCounts, Worker};
 use crate::record::WriteError;
 
-/// Who is asked about the progress of a sweep, and whether to go on.
+/// Observer of the progress of a sweep; its answer says whether to go on.
 pub type Watch<'a> = dyn FnMut(Progress<'_>) -> Go + 'a;
 
 /// Hands out the tasks of a sweep, to threads of this process or to workers elsewhere, and takes their answers.
@@ -33,7 +33,7 @@ pub trait Coordinator {
     /// Hears that a task was lost. In memory its variants have failed; in a store it stays open.
     fn lose(&mut self, task: usize, reason: &str);
 
-    /// How far the sweep is.
+    /// Progress of the sweep.
     fn progress(&self) -> Progress<'_>;
 
     /// Ends the sweep, and returns the tally of all variants and the short account of them.
@@ -42,7 +42,7 @@ pub trait Coordinator {
     /// [`WriteError`] when the store refuses.
     fn finish(&mut self) -> Result<(Tally, String), WriteError>;
 
-    /// Whether the result is where workers and readers find it: an earlier one may still be there.
+    /// Whether workers and readers find this result; until then an earlier one may still be in its place.
     fn is_public(&self) -> bool {
         true
     }
@@ -103,7 +103,7 @@ pub struct SweepMemory {
     sweep: Sweep,
     layout: Layout,
     outcomes: Vec<Outcome>,
-    finished: Finished,
+    finished: VariantCounts,
 }
 
 impl SweepMemory {
@@ -113,11 +113,11 @@ impl SweepMemory {
             sweep: sweep.clone(),
             layout: Layout::new(sweep, variants_per_task, None),
             outcomes: vec![Outcome::Open; sweep.len()],
-            finished: Finished::default(),
+            finished: VariantCounts::default(),
         }
     }
 
-    /// How every variant ended, in their order.
+    /// Outcomes of all variants, in their order.
     pub fn into_outcomes(self) -> Vec<Outcome> {
         self.outcomes
     }

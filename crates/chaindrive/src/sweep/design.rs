@@ -26,7 +26,7 @@ pub struct Recipe {
     pub scene_name: String,
     /// Channels that are kept.
     pub record: Vec<String>,
-    /// How the values become variants.
+    /// Combination of the values into variants.
     pub arrangement: Arrangement,
     /// Paths with their values.
     pub vary: Vec<(String, Vec<Setting>)>,

@@ -5,7 +5,7 @@ use serde_json::Value as Json;
 
 use super::columns::short;
 use super::texts::TEXTS;
-use super::{MOST, Quantity, Statistic, SweepError, VARIANT};
+use super::{MOST, ResultQuantity, Statistic, SweepError, VARIANT};
 use crate::Axis;
 use crate::Channel;
 use crate::scene::{Datum, Scene, SceneError, is_number};
@@ -283,7 +283,7 @@ fn is_taken(name: &str) -> bool {
     let statistics = Statistic::ALL.iter().map(|statistic| statistic.name());
     let along = Statistic::ALL
         .iter()
-        .filter_map(|it| Quantity::Statistic(*it).along());
+        .filter_map(|it| ResultQuantity::Statistic(*it).along());
     let own = ["time", "event", VARIANT]
         .into_iter()
         .chain(TEXTS.map(|(name, _)| name));

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Account, Coordinate, Outcome, Quantity, Statistic, Sweep, places};
+use super::{Account, Coordinate, Outcome, ResultQuantity, Statistic, Sweep, places};
 use crate::Axis;
 
 /// Numbers in a chunk at most, about 1 MiB, unless a single sample of a single variant has more.
@@ -42,7 +42,7 @@ pub(super) struct LabelledAxis {
 }
 
 /// A dimension that a quantity has beside those of the sweep.
-pub(super) struct Beside {
+pub(super) struct ExtraDimension {
     pub(super) name: &'static str,
     /// Entries.
     pub(super) len: usize,
@@ -124,22 +124,22 @@ impl Layout {
 
     /// Numbers of one variant in a chunk.
     fn width(&self, name: &str) -> usize {
-        let Some(quantity) = Quantity::from_name(name) else {
+        let Some(quantity) = ResultQuantity::from_name(name) else {
             return 1;
         };
         self.beside(quantity).iter().map(|it| it.cut).product()
     }
 
     /// The dimensions of a quantity beside those of the sweep.
-    pub(super) fn beside(&self, quantity: Quantity) -> Vec<Beside> {
-        let time = quantity.is_sampled().then_some(Beside {
+    pub(super) fn beside(&self, quantity: ResultQuantity) -> Vec<ExtraDimension> {
+        let time = quantity.is_sampled().then_some(ExtraDimension {
             name: "time",
             len: self.time.len(),
             cut: self.samples,
         });
         let labels = quantity.along().map(|name| {
             let axis = self.axis(quantity);
-            Beside {
+            ExtraDimension {
                 name,
                 len: axis.map_or(0, |axis| axis.labels.len()),
                 cut: axis.map_or(1, |axis| axis.cut),
@@ -149,7 +149,7 @@ impl Layout {
     }
 
     /// The axis of a quantity beside time.
-    pub(super) fn axis(&self, quantity: Quantity) -> Option<&LabelledAxis> {
+    pub(super) fn axis(&self, quantity: ResultQuantity) -> Option<&LabelledAxis> {
         let along = quantity.along()?;
         self.axes.iter().find(|axis| axis.name == along)
     }
@@ -225,7 +225,7 @@ impl Layout {
     /// As many samples as the widest channel allows; all arrays are cut at the same times, as `dask` wants it.
     fn samples_per_chunk(&self, samples: usize) -> usize {
         let channels = self.quantities.iter();
-        let channels = channels.filter_map(|(name, _)| Quantity::from_name(name));
+        let channels = channels.filter_map(|(name, _)| ResultQuantity::from_name(name));
         let channels = channels.filter(|it| it.is_sampled());
         let widths = channels.map(|it| self.axis(it).map_or(1, |axis| axis.cut));
         let widest = widths.fold(1, usize::max);

@@ -38,7 +38,7 @@ impl Sweep {
 }
 
 impl Sweep {
-    /// Whether the account of it has a line a variant.
+    /// Whether its report has one line per variant.
     pub(crate) fn has_a_line_each(&self) -> bool {
         self.len() <= LINES
     }

@@ -1,7 +1,7 @@
-//! Where the outcomes of tasks go.
+//! Destinations of the outcomes of tasks.
 
 use super::layout::Layout;
-use super::{Answer, Finished, Outcome};
+use super::{Answer, Outcome, VariantCounts};
 use crate::precision::Choice;
 use crate::record::WriteError;
 
@@ -10,12 +10,12 @@ pub(super) enum Task {
     /// To be carried out: its variants, in their order.
     Open(Vec<usize>),
     /// Carried out, with these counts.
-    Ended(Finished),
+    Ended(VariantCounts),
 }
 
 /// Where the outcomes of tasks go: back with the answer, or into a region of a store. It also knows how the sweep is cut into tasks.
 pub(super) trait Sink: Send + Sync {
-    /// What is to be done for a task.
+    /// Work of a task.
     fn task(&self, task: usize) -> Result<Task, WriteError>;
 
     /// Takes the outcomes of all variants of a task, in their order.
@@ -40,7 +40,7 @@ impl Sink for Layout {
 
     fn put(&self, task: usize, outcomes: Vec<Outcome>) -> Result<Answer, WriteError> {
         Ok(Answer {
-            finished: Finished::of(&outcomes),
+            finished: VariantCounts::of(&outcomes),
             outcomes: self.region(task).variants().zip(outcomes).collect(),
         })
     }

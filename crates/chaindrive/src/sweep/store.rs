@@ -18,7 +18,7 @@
 //! renaming it), so a chunk is there or not. A task whose worker died is carried out again and gives the same bits.
 
 mod coordinator;
-mod place;
+mod location;
 mod sink;
 
 use std::sync::Arc;
@@ -28,12 +28,12 @@ use zarrs::array::builder::ArrayBuilderFillValue;
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{ArrayBuilder, CodecOptions, DataType, data_type};
 
-use super::Quantity;
+use super::ResultQuantity;
 use super::layout::Layout;
 use super::texts::{MARK, blank};
 use crate::zarr::{Fault, Storage, StoredArray, ZSTD_LEVEL};
 pub use coordinator::SweepStore;
-pub use place::Place;
+pub use location::StoreLocation;
 pub(super) use sink::StoreSink;
 
 /// Arrays of the store by a layout.
@@ -47,7 +47,7 @@ struct Arrays<'a> {
 impl Arrays<'_> {
     fn quantity(
         &self,
-        quantity: Quantity,
+        quantity: ResultQuantity,
         about: Map<String, Value>,
     ) -> Result<StoredArray, Fault> {
         let layout = self.layout;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::columns::{COLUMNS, short};
-use super::{Account, Finished, Outcome, Sweep};
+use super::{Account, Outcome, Sweep, VariantCounts};
 use crate::zarr::Ending;
 
 /// Failures that are told.
@@ -29,7 +29,7 @@ pub struct Tally {
     first_distrusted: Option<(usize, String)>,
     /// The first failures with their messages.
     failures: Vec<(usize, String)>,
-    /// Where each figure is least and greatest.
+    /// Variants with the least and the greatest value of each figure.
     extremes: [[Figure; 2]; COLUMNS.len()],
 }
 
@@ -44,15 +44,15 @@ impl Tally {
     }
 
     /// The counts of variants that have ended.
-    pub fn counts(&self) -> Finished {
-        Finished {
+    pub fn counts(&self) -> VariantCounts {
+        VariantCounts {
             done: self.finished,
             failed: self.failed,
             distrusted: self.distrusted,
         }
     }
 
-    /// How a sweep ended that goes on no more; variants that failed count as a failure of the sweep.
+    /// Ending of a sweep that has stopped; variants that failed count as a failure of the sweep.
     pub fn ending(&self) -> Ending {
         let all = self.finished + self.failed + self.open;
         match self.failed {

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::choices::Shared;
+use super::choices::SharedChoice;
 use super::layout::Layout;
 use super::sink::{Sink, Task};
-use super::store::{Place, StoreSink};
+use super::store::{StoreLocation, StoreSink};
 use super::threads::on_threads;
 use super::{Answer, Go, Outcome, Recipe, Sweep, SweepError};
 use crate::record::WriteError;
@@ -43,7 +43,7 @@ impl Worker {
     ///
     /// # Errors
     /// [`WriteError`] where there is none, or one of another build of the program or another instruction set.
-    pub fn open(place: impl Into<Place>) -> Result<Self, WriteError> {
+    pub fn open(place: impl Into<StoreLocation>) -> Result<Self, WriteError> {
         let sink = StoreSink::open(&place.into())?;
         Ok(Self::of(&sink.sweep()?, sink))
     }
@@ -123,7 +123,7 @@ impl Worker {
         &self,
         variant: usize,
         stop: &AtomicBool,
-    ) -> Result<Option<Shared>, WriteError> {
+    ) -> Result<Option<SharedChoice>, WriteError> {
         let block = self.sweep.blocks().block(variant);
         self.sweep.choices.get(block, || {
             if let Some(choice) = self.sink.choice(block)? {

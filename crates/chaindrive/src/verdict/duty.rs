@@ -1,7 +1,7 @@
-//! Whether a drive could do what the run asks of it, and whether the run asks for what was meant.
+//! Limits of a real drive that a run exceeds, and requests that were probably not meant.
 
 use chaindrive_contact::dissipation::FASTEST_IMPACT;
-use chaindrive_mechanics::{Parts, Struck, Unrated};
+use chaindrive_mechanics::{BodyImpacts, MissingRating, Parts};
 
 use super::{ALIGNED, DRIVES, LEAST_SAMPLES, MATTERS, Reason};
 use crate::rating::{Load, Rating};
@@ -59,7 +59,7 @@ fn overloaded(rating: &Rating) -> Option<Reason> {
 /// A chain that carries power, and whose type nobody rates.
 fn unrated(rating: &Rating) -> Option<Reason> {
     let turns = rating.sprocket.as_ref()?.speed.abs() > 0.0;
-    let nobody = matches!(rating.limits, Err(Unrated::SourceMissing { .. }));
+    let nobody = matches!(rating.limits, Err(MissingRating::SourceMissing { .. }));
     (turns && nobody).then(|| Reason::NotRated {
         chain: rating.chain.clone(),
         power: rating.carried,
@@ -76,7 +76,7 @@ fn pressed(load: &Load) -> Option<Reason> {
 }
 
 /// The contact that is farthest beyond the reach of its law.
-fn deepest(struck: &[Struck]) -> Option<Reason> {
+fn deepest(struck: &[BodyImpacts]) -> Option<Reason> {
     let beyond = struck.iter().filter_map(|it| {
         let reach = it.reach?;
         let depth = it.impacts.deepest;
@@ -91,7 +91,7 @@ fn deepest(struck: &[Struck]) -> Option<Reason> {
 }
 
 /// The fastest impact, where that is beyond what a restitution stands for.
-fn fastest(struck: &[Struck]) -> Option<Reason> {
+fn fastest(struck: &[BodyImpacts]) -> Option<Reason> {
     let mut struck = struck.iter();
     let first = struck.next()?;
     let worst = struck.fold(first, |most, it| {

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::fmt;
 
 use chaindrive_contact::dissipation::FASTEST_IMPACT;
-use chaindrive_mechanics::Fight;
+use chaindrive_mechanics::MotionConflict;
 
 use super::{
     ALIGNED, ALIGNED_FAST, DRIVES, LEAST_SAMPLES, LEAST_SHIFT, LEAST_STEPS, LONG_PRESSED, MATTERS,
@@ -147,7 +147,7 @@ reasons! {
     /// Motions that are given cannot both be on one chain.
     MotionsFight, "motions-fight", Distrusted {
         /// The two motions.
-        fight: Fight,
+        fight: MotionConflict,
     }
     says ("{fight}")
     when ("motions that are given move a chain more than a tooth apart") by "springs and slack take up less";

@@ -1,11 +1,11 @@
-//! Where the ledger begins to speak against a run.
+//! Thresholds of the energy balance at which the verdict turns against a run.
 
 use super::*;
-use chaindrive_mechanics::Fight;
+use chaindrive_mechanics::MotionConflict;
 
 use crate::precision::Gap;
 use crate::rating::LimitedBy;
-use crate::summary::Known;
+use crate::summary::ConfidenceInterval;
 
 /// A drive that takes in 100 J and loses 2 J.
 fn ledger_with(residual: f64) -> Ledger {
@@ -146,7 +146,7 @@ fn the_worst_reason_decides_and_comes_first() {
 
 /// A span with a mean, and a steady state of 1000 N that begins after 0.6 s.
 fn reached(mean: f64, half_width: f64) -> (&'static str, Steadiness, f64) {
-    let known = |value| Known { value, half_width };
+    let known = |value| ConfidenceInterval { value, half_width };
     let found = Steadiness {
         mean: known(mean),
         deviation: known(10.0),
@@ -285,7 +285,7 @@ fn specimens() -> Vec<Reason> {
             needed: 5e-3,
         },
         Reason::MotionsFight {
-            fight: Fight {
+            fight: MotionConflict {
                 sprockets: ["a", "b"].map(str::to_owned),
                 teeth: 3.0,
             },

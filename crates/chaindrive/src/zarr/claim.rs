@@ -85,7 +85,7 @@ impl Claim {
         &self.place
     }
 
-    /// Where a result is made before it takes its place.
+    /// Path at which a result is made before it takes its place.
     pub fn workshop(&self) -> PathBuf {
         self.beside.join("new")
     }
@@ -205,7 +205,7 @@ pub fn take_over(path: impl AsRef<Path>) -> Result<(), WriteError> {
     removed.map_err(io)
 }
 
-/// Whether a process that lives is writing a result here.
+/// Whether a running process is writing a result at this path.
 ///
 /// A result that says `running`, and that nobody writes, was left by a process that was killed.
 ///
@@ -240,7 +240,7 @@ fn is_locked(beside: &Path) -> io::Result<bool> {
     }
 }
 
-/// Where a path leads; what does not exist yet stands in a folder that does.
+/// The path with symbolic links followed; its last part need not exist yet.
 fn followed(path: &Path) -> Result<PathBuf, WriteError> {
     let io = |source| WriteError::Io {
         path: path.to_owned(),

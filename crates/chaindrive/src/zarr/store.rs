@@ -29,7 +29,7 @@ pub(crate) struct Store {
     disk: Option<Disk>,
     storage: Storage,
     last: Document,
-    /// Whether the last word was said: how it ended, or that it was given up.
+    /// Whether the ending is written: that of the run, or that it was given up.
     ended: bool,
     /// Why it had failed before it went on.
     earlier: Option<String>,
@@ -200,7 +200,7 @@ impl Store {
         Ok(self.storage.remove(&StoreKey::new(key)?)?)
     }
 
-    /// Removes the chunks of an array behind the last that is used along its first dimension.
+    /// Removes the chunks of an array after the last that is used along its first dimension.
     pub(crate) fn clear_behind(&self, array: &str, last: u64) -> Result<(), Fault> {
         let chunks = format!("{array}/c/");
         for key in self.storage.held(&chunks)? {

@@ -1,4 +1,4 @@
-//! What a result says about itself: attributes, and how it ended.
+//! Attributes of a result, and its ending.
 
 use serde_json::{Map, Value};
 
@@ -7,7 +7,7 @@ use crate::{Build, Origin};
 /// Tells a result of this program from any other group.
 pub(crate) const FORMAT: &str = "chaindrive";
 
-/// How a run ended.
+/// Ending of a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Ending {
     /// It has not.

@@ -151,7 +151,7 @@ pub(crate) fn document(asked: &Path, text: Option<&[u8]>) -> Result<Value, Write
         .ok_or_else(|| foreign(asked, "this folder is not a result of chaindrive"))
 }
 
-/// Whether a result was begun and left before it held anything.
+/// Whether a result was abandoned before it held any samples.
 fn is_empty_torso(group: &Value) -> bool {
     let attributes = &group["attributes"];
     let held = attributes.get("samples").or(attributes.get("finished"));

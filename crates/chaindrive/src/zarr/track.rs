@@ -75,7 +75,7 @@ impl Track {
         })
     }
 
-    /// Goes on behind the samples that are in the store; what there is more of them is forgotten.
+    /// Goes on after the samples that are in the store; what there is more of them is forgotten.
     pub(crate) fn go_on(&mut self, samples: u64) -> Result<(), Fault> {
         self.set_length(samples)?;
         self.chunk = samples / self.samples as u64;

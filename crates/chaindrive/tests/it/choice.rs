@@ -3,7 +3,7 @@
 
 use chaindrive::precision::{ACCURACY, Choice, Promise, Quantity, choose};
 use chaindrive::{
-    Assembled, Given, ImpactStatistics, Memory, Request, Run, Scene, Settings, Simulation,
+    Assembled, ImpactStatistics, Memory, Request, Run, Scene, SettingValue, Settings, Simulation,
     SimulationError, Stepping, Summary, Trust, execute,
 };
 use chaindrive_integrate::SecondOrderSystem;
@@ -322,7 +322,7 @@ fn errors_of_impacts_are_those_of_the_step() {
 fn what_loses_nothing_has_no_losses_to_keep() {
     let ring = Scene::preset("spinning_ring").unwrap();
     let ring = ring.replace("run.accuracy_of", "losses").unwrap();
-    let settings = Settings::default().with("accuracy", Given::Number(0.01));
+    let settings = Settings::default().with("accuracy", SettingValue::Number(0.01));
     let request = Request::new(&ring, &settings).unwrap();
     assert_eq!(request.accuracy_of, Quantity::Losses);
     let start = ring.drive().unwrap().assemble().unwrap();
@@ -372,8 +372,8 @@ fn steps_whose_energy_does_not_add_up_are_not_chosen() {
 fn no_run_is_chosen_whose_losses_nobody_would_trust() {
     let scene = Scene::preset("motorcycle").unwrap();
     let settings = Settings::default()
-        .with("until", Given::Number(0.05))
-        .with("run_in", Given::Number(0.0));
+        .with("until", SettingValue::Number(0.05))
+        .with("run_in", SettingValue::Number(0.0));
     let request = Request::new(&scene, &settings).unwrap().without_estimate();
     let report = execute(&request, &mut Memory::default(), &|| false).unwrap();
     let choice = report.choice.unwrap();

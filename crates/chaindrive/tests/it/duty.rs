@@ -5,10 +5,10 @@
 use chaindrive::rating::rated_power;
 use chaindrive::record::SpanStatistics;
 use chaindrive::{
-    Channel, Description, EventKinds, Given, Judgement, Memory, Request, Run, Scene, Settings,
-    Simulation, Summary, Trust, Verdict, execute,
+    Channel, Description, EventKinds, Judgement, Memory, Request, Run, Scene, SettingValue,
+    Settings, Simulation, Summary, Trust, Verdict, execute,
 };
-use chaindrive_mechanics::{Energy, Struck};
+use chaindrive_mechanics::{BodyImpacts, Energy};
 
 use crate::judged::{finished, names, notes, page, preset, run, verdict};
 
@@ -228,8 +228,8 @@ fn a_load_that_drives_is_a_caution() {
 fn samples_too_rare_for_the_mesh_are_a_caution_where_they_are_kept() {
     let with = |every: f64, kept: bool| {
         let settings = Settings::default()
-            .with("until", Given::Number(0.1))
-            .with("every", Given::Number(every));
+            .with("until", SettingValue::Number(0.1))
+            .with("every", SettingValue::Number(every));
         let request = Request::new(&loaded("-300 N m"), &settings).unwrap();
         let request = request.with_default_step().without_estimate();
         if kept {
@@ -315,7 +315,7 @@ fn impacts_are_counted_as_they_are_logged() {
     let kinds = summary.contacts(&simulation);
     let events: u64 = kinds.iter().map(|kind| kind.count).sum();
     let struck = simulation.system().struck();
-    let [Struck { impacts, floor, .. }] = struck.as_slice() else {
+    let [BodyImpacts { impacts, floor, .. }] = struck.as_slice() else {
         panic!("{struck:?}");
     };
     assert!(

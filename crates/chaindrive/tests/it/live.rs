@@ -257,7 +257,7 @@ fn a_snapshot_knows_what_is_set() {
     other.advance_to(1e-4).unwrap();
     other.restore(&kept).unwrap();
     assert_eq!(bits(other.advance_to(9e-4).unwrap()), end);
-    // A change behind the last reading, where the step before it was beyond.
+    // A change after the last reading, where the step before it was beyond.
     let mut first = fresh.clone();
     first.advance_to(3.3e-4).unwrap();
     let kept = Snapshot::from_bytes(&first.snapshot().to_bytes()).unwrap();

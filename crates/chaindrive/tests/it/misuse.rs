@@ -75,7 +75,7 @@ fn spoilt(line: &str, seeded: &mut Seeded) -> String {
         2 => String::new(),
         3 => format!("{line}\n{line}"),
         4 => {
-            // The unit, or what else stands behind the first blank of a text.
+            // The unit, or what else stands after the first blank of a text.
             let unit = seeded.one_of(&UNITS);
             let quoted: Vec<&str> = value.splitn(3, '"').collect();
             match quoted.as_slice() {

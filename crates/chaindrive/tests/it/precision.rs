@@ -4,8 +4,8 @@
 use chaindrive::precision::{Divergence, Estimate, estimate, horizon};
 use chaindrive::record::{Ending, Existing, Provenance, ZarrWriter};
 use chaindrive::{
-    Channel, Given, Judgement, Memory, Request, Run, Scene, Settings, Simulation, SimulationError,
-    Stepping, execute,
+    Channel, Judgement, Memory, Request, Run, Scene, SettingValue, Settings, Simulation,
+    SimulationError, Stepping, execute,
 };
 
 fn never() -> bool {
@@ -197,12 +197,12 @@ fn stored(path: &std::path::Path, name: &str) -> serde_json::Value {
     document["attributes"].clone()
 }
 
-/// An estimate behind a choice goes on with its short runs: the same numbers, for less.
+/// An estimate after a choice goes on with its short runs: the same numbers, for less.
 #[test]
 fn an_estimate_behind_a_choice_is_that_of_the_run_for_less() {
     let settings = Settings::default()
-        .with("until", Given::Number(0.1))
-        .with("run_in", Given::Number(0.0));
+        .with("until", SettingValue::Number(0.1))
+        .with("run_in", SettingValue::Number(0.0));
     for scene in ["marine_two_sprockets", "bicycle"] {
         let request = Request::new(&Scene::preset(scene).unwrap(), &settings).unwrap();
         let report = execute(&request, &mut Memory::default(), &never).unwrap();

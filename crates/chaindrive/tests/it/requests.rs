@@ -2,8 +2,8 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use chaindrive::{
-    Given, Memory, Request, RequestError, RunError, Scene, Settings, SimulationError, Stepping,
-    Stop, execute,
+    Memory, Request, RequestError, RunError, Scene, SettingValue, Settings, SimulationError,
+    Stepping, Stop, execute,
 };
 
 fn scene(run: &[(&str, &str)]) -> Scene {
@@ -17,7 +17,7 @@ fn given(settings: &[(&str, &str)]) -> Settings {
     settings
         .iter()
         .fold(Settings::default(), |all, (key, value)| {
-            all.with(key, Given::Text((*value).to_owned()))
+            all.with(key, SettingValue::Text((*value).to_owned()))
         })
 }
 
@@ -72,7 +72,7 @@ fn two_that_exclude_each_other_are_refused() {
         refused(both),
         RequestError::Setting(SimulationError::Conflict { given: "step" })
     ));
-    let number = Settings::default().with("step", Given::Number(f64::NAN));
+    let number = Settings::default().with("step", SettingValue::Number(f64::NAN));
     assert!(refused(number).to_string().contains("step = NaN"));
     let method = refused(given(&[("method", "euler")])).to_string();
     assert!(method.contains("no method is named `euler`"), "{method}");

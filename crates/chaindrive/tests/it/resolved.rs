@@ -2,7 +2,9 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use chaindrive::scene::{Scene, diff, presets};
-use chaindrive::{Channel, Given, Memory, Recording, Request, Run, Settings, Simulation, execute};
+use chaindrive::{
+    Channel, Memory, Recording, Request, Run, SettingValue, Settings, Simulation, execute,
+};
 use proptest::prelude::*;
 
 /// Every number of a drive, in the shortest digits that tell it from all others.
@@ -260,8 +262,8 @@ proptest! {
 fn every_result_carries_what_reproduces_it() {
     for name in ["spinning_ring", "pin_in_bush", "industrial_16b"] {
         let settings = Settings::default()
-            .with("until", Given::Number(5e-4))
-            .with("every", Given::Number(1e-4));
+            .with("until", SettingValue::Number(5e-4))
+            .with("every", SettingValue::Number(1e-4));
         let scene = Scene::preset(name).unwrap();
         let carried_out = |scene: &Scene, settings: &Settings| {
             let request = Request::new(scene, settings).unwrap().without_estimate();
@@ -288,9 +290,9 @@ fn every_result_carries_what_reproduces_it() {
 fn a_recording_beyond_all_memory_is_refused_with_its_size() {
     let scene = Scene::preset("industrial_16b").unwrap();
     let settings = Settings::default()
-        .with("until", Given::Number(900.0))
-        .with("every", Given::Number(1e-6))
-        .with("method", Given::Text("verlet".into()));
+        .with("until", SettingValue::Number(900.0))
+        .with("every", SettingValue::Number(1e-6))
+        .with("method", SettingValue::Text("verlet".into()));
     let request = Request::new(&scene, &settings).unwrap();
     let error = execute(&request, &mut Memory::default(), &|| false).unwrap_err();
     let message = error.to_string();

@@ -4,10 +4,10 @@
 use std::cell::RefCell;
 use std::f64::consts::PI;
 
-use chaindrive::record::{Existing, InStore, Stopped};
+use chaindrive::record::{Existing, StoppedRun, ZarrSink};
 use chaindrive::{
-    Assembled, Channel, Description, Given, Memory, Onlooker, RanIn, Report, Request, Run,
-    RunError, RunIn, Scene, Settings, Simulation, SimulationError, execute, run_in,
+    Assembled, Channel, Description, Memory, Onlooker, Report, Request, Run, RunError, RunIn,
+    RunInReport, Scene, SettingValue, Settings, Simulation, SimulationError, execute, run_in,
 };
 
 use crate::judged::preset;
@@ -18,8 +18,8 @@ pub(crate) fn ran(scene: &Scene, settings: &[(&str, &str)]) -> (Report, Memory) 
         .fold(Settings::default(), |all, (key, text)| {
             let names = || text.split(',').map(str::to_owned).collect();
             let given = match *key {
-                "record" => Given::Names(names()),
-                _ => Given::Text((*text).to_owned()),
+                "record" => SettingValue::Names(names()),
+                _ => SettingValue::Text((*text).to_owned()),
             };
             all.with(key, given)
         });
@@ -35,7 +35,7 @@ pub(crate) fn channel(memory: &Memory, channel: Channel) -> &[f64] {
     &columns.find(|it| it.channel == channel).unwrap().values
 }
 
-fn started(scene: &Scene, wanted: RunIn) -> Result<(Assembled, RanIn), SimulationError> {
+fn started(scene: &Scene, wanted: RunIn) -> Result<(Assembled, RunInReport), SimulationError> {
     let start = scene.drive().unwrap().assemble().unwrap();
     let run = Run {
         run_in: wanted,
@@ -244,21 +244,21 @@ fn a_run_that_is_carried_on_is_not_run_in_again() {
     let scene = preset("marine_two_sprockets", &[]);
     let wanted = |until: f64| {
         Settings::default()
-            .with("until", Given::Number(until))
-            .with("every", Given::Number(1e-3))
-            .with("method", Given::Text("verlet".to_owned()))
-            .with("run_in", Given::Number(0.02))
+            .with("until", SettingValue::Number(until))
+            .with("every", SettingValue::Number(1e-3))
+            .with("method", SettingValue::Text("verlet".to_owned()))
+            .with("run_in", SettingValue::Number(0.02))
     };
     let request = |until| Request::new(&scene, &wanted(until)).unwrap();
-    let every = Given::Number(5e-3);
+    let every = SettingValue::Number(5e-3);
     let first = request(0.01).with_checkpoints(&every).unwrap();
     let watching = Watching::default();
-    let mut store = InStore::new(path.clone(), Existing::Keep);
+    let mut store = ZarrSink::new(path.clone(), Existing::Keep);
     execute(&first, &mut store, &watching).unwrap();
     let seen = watching.seen.take();
     assert!(seen.iter().all(|share| (0.0..=1.0).contains(share)) && !seen.is_empty());
 
-    let stopped = Stopped::open(&path, Some(&Given::Number(0.02))).unwrap();
+    let stopped = StoppedRun::open(&path, Some(&SettingValue::Number(0.02))).unwrap();
     let resumed = stopped.resume(&watching).unwrap();
     assert!(watching.seen.borrow().is_empty(), "run in again");
     let whole = execute(&request(0.02), &mut Memory::default(), &|| false).unwrap();
@@ -279,7 +279,7 @@ fn a_run_that_is_carried_on_is_not_run_in_again() {
 #[test]
 fn a_run_in_can_be_stopped() {
     for wanted in ["auto", "1000 s"] {
-        let settings = Settings::default().with("run_in", Given::Text(wanted.to_owned()));
+        let settings = Settings::default().with("run_in", SettingValue::Text(wanted.to_owned()));
         let scene = preset("marine_two_sprockets", &[]);
         let request = Request::new(&scene, &settings).unwrap().with_default_step();
         let watching = Watching {
@@ -295,7 +295,7 @@ fn a_run_in_can_be_stopped() {
 #[test]
 fn the_summary_tells_of_the_run_in() {
     let told = |is_steady| {
-        RanIn {
+        RunInReport {
             time: 0.5,
             is_steady,
             by_default: false,
@@ -335,7 +335,7 @@ fn what_a_run_in_costs_is_described() {
     let by_itself = described(RunIn::Auto);
     let most = by_itself.cost.run_in;
     assert!((most / (32.0 * 1.12) - 1.0).abs() < 1e-9, "{most}");
-    // A record of 1 s that is steady from the start: 40 blocks of two and a half teeth, behind the quarter that is not tried.
+    // A record of 1 s that is steady from the start: 40 blocks of two and a half teeth, after the quarter that is not tried.
     let least = by_itself.cost.run_in_least;
     assert!((1.3..1.4).contains(&least), "{least}");
     let told = by_itself.to_string();

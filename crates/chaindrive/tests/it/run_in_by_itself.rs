@@ -2,10 +2,10 @@
 
 use std::cell::Cell;
 
-use chaindrive::record::{Existing, InStore, Stopped};
+use chaindrive::record::{Existing, StoppedRun, ZarrSink};
 use chaindrive::{
-    Channel, Given, MOST_CIRCUITS, Memory, Onlooker, Reason, Report, Request, RunError, Scene,
-    Settings, Simulation, execute,
+    Channel, MOST_CIRCUITS, Memory, Onlooker, Reason, Report, Request, RunError, Scene,
+    SettingValue, Settings, Simulation, execute,
 };
 
 use crate::judged::preset;
@@ -85,10 +85,10 @@ fn what_a_run_in_examined_becomes_the_record() {
     let scene = SOFT.scene();
     for [until, kept] in [[2.0, 1.0], [0.5, 1.0], [2e-3, 0.0]] {
         let settings = Settings::default()
-            .with("until", Given::Number(until))
-            .with("every", Given::Number(1e-3))
-            .with("method", Given::Text("verlet".to_owned()))
-            .with("run_in", Given::Text("auto".to_owned()));
+            .with("until", SettingValue::Number(until))
+            .with("every", SettingValue::Number(1e-3))
+            .with("method", SettingValue::Text("verlet".to_owned()))
+            .with("run_in", SettingValue::Text("auto".to_owned()));
         let request = Request::new(&scene, &settings).unwrap().without_estimate();
         let mut memory = Memory::default();
         let report = execute(&request, &mut memory, &|| false).unwrap();
@@ -129,12 +129,14 @@ fn what_a_run_in_examined_becomes_the_record() {
 #[test]
 fn a_run_in_by_itself_is_carried_on_to_the_same_bits() {
     let settings = Settings::default()
-        .with("until", Given::Number(0.5))
-        .with("every", Given::Number(5e-3))
-        .with("events", Given::Names(vec!["teeth".to_owned()]))
-        .with("accuracy", Given::Number(0.02));
+        .with("until", SettingValue::Number(0.5))
+        .with("every", SettingValue::Number(5e-3))
+        .with("events", SettingValue::Names(vec!["teeth".to_owned()]))
+        .with("accuracy", SettingValue::Number(0.02));
     let request = Request::new(&SOFT.scene(), &settings).unwrap();
-    let request = request.with_checkpoints(&Given::Number(0.05)).unwrap();
+    let request = request
+        .with_checkpoints(&SettingValue::Number(0.05))
+        .unwrap();
     let mut whole = Memory::default();
     let report = execute(&request, &mut whole, &|| false).unwrap();
     for stopped_in in [
@@ -144,12 +146,12 @@ fn a_run_in_by_itself_is_carried_on_to_the_same_bits() {
     ] {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("run.zarr");
-        let mut store = InStore::new(path.clone(), Existing::Keep);
+        let mut store = ZarrSink::new(path.clone(), Existing::Keep);
         let seen = Stopping(stopped_in, Cell::new(0));
         let ended = execute(&request, &mut store, &seen);
         let is_in_run_in = matches!(ended, Err(RunError::Interrupted));
         assert_eq!(is_in_run_in, stopped_in == StoppedIn::RunIn);
-        let stopped = Stopped::open(&path, None).unwrap();
+        let stopped = StoppedRun::open(&path, None).unwrap();
         let resumed = stopped.resume(&|| false).unwrap();
         let last = |report: &Report| report.simulation.observation().link_tension.clone();
         assert_eq!(last(&resumed), last(&report), "{stopped_in:?}");

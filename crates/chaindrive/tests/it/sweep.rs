@@ -5,8 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use chaindrive::record::SpanStatistics;
 use chaindrive::scene::{Datum, Scene};
-use chaindrive::sweep::{Account, Answer, Coordinate, Coordinator, Go, Outcome, Quantity};
-use chaindrive::sweep::{Setting, Stacked, Statistic, Sweep, SweepError, SweepMemory, Worker};
+use chaindrive::sweep::{Account, Answer, Coordinate, Coordinator, Go, Outcome, ResultQuantity};
+use chaindrive::sweep::{Setting, Statistic, Sweep, SweepArrays, SweepError, SweepMemory, Worker};
 use chaindrive::{Channel, Run, Simulation, Summary};
 
 type Checked = Result<(), Box<dyn Error>>;
@@ -38,8 +38,7 @@ fn bits(outcome: &Outcome) -> Vec<(&'static str, Vec<u64>)> {
     let Outcome::Done(account) = outcome else {
         return Vec::new();
     };
-    let same =
-        |quantity: Quantity| !matches!(quantity, Quantity::Statistic(it) if it.is_measured());
+    let same = |quantity: ResultQuantity| !matches!(quantity, ResultQuantity::Statistic(it) if it.is_measured());
     let entries = account.entries.iter().filter(|it| same(it.quantity));
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect();
     entries
@@ -105,15 +104,18 @@ fn a_variant_is_the_run_of_its_scene() -> Checked {
         tension.extend_from_slice(&sample.span_tension);
     }
     let stacked = sweep.stack(&outcomes);
-    let last = |quantity: Quantity| {
+    let last = |quantity: ResultQuantity| {
         let found = stacked.quantities.iter().find(|it| it.quantity == quantity);
         let values = found.map(|it| it.values.chunks(it.values.len() / 6).last());
         values.flatten().unwrap_or_default().to_vec()
     };
-    assert_eq!(last(Quantity::Channel(Channel::SpanTension)), tension);
+    assert_eq!(last(ResultQuantity::Channel(Channel::SpanTension)), tension);
     let means: Vec<f64> = summary.spans.iter().map(SpanStatistics::mean).collect();
-    assert_eq!(last(Quantity::Statistic(Statistic::SpanTensionMean)), means);
-    let largest = Quantity::Statistic(Statistic::ContactForceMax);
+    assert_eq!(
+        last(ResultQuantity::Statistic(Statistic::SpanTensionMean)),
+        means
+    );
+    let largest = ResultQuantity::Statistic(Statistic::ContactForceMax);
     assert_eq!(last(largest), [summary.forces().max]);
     Ok(())
 }
@@ -185,7 +187,7 @@ fn dimensions_are_named_by_the_end_of_their_path_and_keep_si_values() -> Checked
     Ok(())
 }
 
-fn texts_of(stacked: &Stacked, name: &str) -> Vec<String> {
+fn texts_of(stacked: &SweepArrays, name: &str) -> Vec<String> {
     let found = stacked.texts.iter().find(|it| it.name == name);
     found.map(|it| it.texts.clone()).unwrap_or_default()
 }
@@ -241,7 +243,7 @@ fn the_longest_run_and_the_longest_chain_decide_about_the_size() -> Checked {
     ];
     let sweep = Sweep::new(&scene, &vary, &["link_tension".to_owned()])?;
     let stacked = sweep.stack(&sweep.run(Some(2), |_| Go::On)?);
-    let tension = Quantity::Channel(Channel::LinkTension);
+    let tension = ResultQuantity::Channel(Channel::LinkTension);
     let found = stacked.quantities.iter().find(|it| it.quantity == tension);
     let found = found.ok_or("the channel that was asked for")?;
     assert_eq!(found.dims, ["links", "until", "time", "link"]);
@@ -422,7 +424,7 @@ fn logged_contacts_are_counted_by_kind() -> Checked {
     let vary = [texts("route.pretension", ["10 kN", "20 kN"])];
     let sweep = Sweep::new(&scene, &vary, &[])?;
     let stacked = sweep.stack(&sweep.run(None, |_| Go::On)?);
-    let count = Quantity::from_name("contact_count").ok_or("a statistic")?;
+    let count = ResultQuantity::from_name("contact_count").ok_or("a statistic")?;
     let found = stacked.quantities.iter().find(|it| it.quantity == count);
     let found = found.ok_or("contacts were logged")?;
     assert_eq!(found.dims, ["pretension", "contact_kind"]);
@@ -434,12 +436,12 @@ fn logged_contacts_are_counted_by_kind() -> Checked {
 #[test]
 fn quantities_are_found_by_their_names() {
     for &statistic in Statistic::ALL {
-        let quantity = Quantity::Statistic(statistic);
-        assert_eq!(Quantity::from_name(quantity.name()), Some(quantity));
+        let quantity = ResultQuantity::Statistic(statistic);
+        assert_eq!(ResultQuantity::from_name(quantity.name()), Some(quantity));
     }
     for &channel in Channel::ALL {
-        let quantity = Quantity::Channel(channel);
-        assert_eq!(Quantity::from_name(quantity.name()), Some(quantity));
+        let quantity = ResultQuantity::Channel(channel);
+        assert_eq!(ResultQuantity::from_name(quantity.name()), Some(quantity));
     }
     assert_eq!(Account::default().labels_along("span"), None);
 }

@@ -2,10 +2,10 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use chaindrive::precision::choose;
-use chaindrive::record::{Existing, InStore};
+use chaindrive::record::{Existing, ZarrSink};
 use chaindrive::{
-    Choice, Given, Judgement, Memory, Request, Run, Scene, Settings, Simulation, Stepping, Summary,
-    Trust, Verdict, execute,
+    Choice, Judgement, Memory, Request, Run, Scene, SettingValue, Settings, Simulation, Stepping,
+    Summary, Trust, Verdict, execute,
 };
 
 use crate::judged::{finished, names, notes, page, preset, run, verdict};
@@ -276,9 +276,9 @@ fn links_that_are_pressed_are_named() {
 fn a_choice_is_held_against_the_estimate_of_the_run() {
     let scene = preset("marine_engine_bare", &[]);
     let settings = Settings::default()
-        .with("until", Given::Number(0.3))
-        .with("run_in", Given::Number(0.0))
-        .with("accuracy", Given::Number(0.01));
+        .with("until", SettingValue::Number(0.3))
+        .with("run_in", SettingValue::Number(0.0))
+        .with("accuracy", SettingValue::Number(0.01));
     let request = Request::new(&scene, &settings).unwrap();
     let report = execute(&request, &mut Memory::default(), &|| false).unwrap();
     let choice = report.choice.clone().unwrap();
@@ -336,15 +336,15 @@ fn results_carry_the_verdict() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("rough.zarr");
     let settings = Settings::default()
-        .with("until", Given::Number(1e-4))
-        .with("every", Given::Number(1e-5))
-        .with("method", Given::Text("implicit-damping".to_owned()))
-        .with("step", Given::Text("3 µs".to_owned()))
-        .with("run_in", Given::Number(0.0));
+        .with("until", SettingValue::Number(1e-4))
+        .with("every", SettingValue::Number(1e-5))
+        .with("method", SettingValue::Text("implicit-damping".to_owned()))
+        .with("step", SettingValue::Text("3 µs".to_owned()))
+        .with("run_in", SettingValue::Number(0.0));
     // Bare seats strike harder than steps of 3 µs account for.
     let bare = preset("motorcycle", &[("contact.teeth.series", "0")]);
     let request = Request::new(&bare, &settings).unwrap();
-    let mut store = InStore::new(path.clone(), Existing::Keep);
+    let mut store = ZarrSink::new(path.clone(), Existing::Keep);
     let told = execute(&request, &mut store, &|| false).unwrap();
     let text = std::fs::read(path.join("zarr.json")).unwrap();
     let document: serde_json::Value = serde_json::from_slice(&text).unwrap();

@@ -294,7 +294,7 @@ fn a_key_of_json_stands_once() {
     fails(r#"{"chain": {"links": 4, "mass": null}, "title": null}"#);
 }
 
-/// A table of measured values may stand on one line, and something else behind it.
+/// A table of measured values may stand on one line, and something else after it.
 #[test]
 fn long_lines_are_read_at_once() {
     let pairs = "[0.5, 1.5], ".repeat(150_000);

@@ -8,7 +8,7 @@ use chaindrive::scene::RunDefaults;
 use chaindrive::{Request, Scene, Stepping, assemble};
 use clap::Args;
 
-use crate::Drawn;
+use crate::DrawingRequest;
 use crate::failure::Failure;
 use crate::progress::waiting;
 use crate::request::{RunArguments, SceneArguments, any, some};
@@ -60,8 +60,8 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     /// The diagram that the Python package draws of the table.
-    pub(crate) fn diagram(self) -> Drawn {
-        Drawn {
+    pub(crate) fn diagram(self) -> DrawingRequest {
+        DrawingRequest {
             source: named(&self.output, "csv"),
             output: named(&self.output, "svg"),
             frames: None,

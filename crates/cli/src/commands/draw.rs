@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use chaindrive::draw::svg;
-use chaindrive::record::Recorded;
+use chaindrive::record::RecordedRun;
 use chaindrive::{Figure, Instant, Pose, Scene, patiently};
 use clap::Args;
 
@@ -99,7 +99,7 @@ fn figure(
 
 /// A sample of a result.
 struct Sample {
-    recorded: Recorded,
+    recorded: RecordedRun,
     index: usize,
     run_in: f64,
 }
@@ -108,7 +108,7 @@ struct Sample {
 fn sample(result: &str, time: &str) -> Result<Sample, Failure> {
     let time = read_time(time).map_err(|problem| Failure::Argument(format!("--at: {problem}")))?;
     let wanted = |name: &str| Instant::CHANNELS.contains(&name);
-    let recorded = Recorded::open(Path::new(result), &wanted, usize::MAX)?;
+    let recorded = RecordedRun::open(Path::new(result), &wanted, usize::MAX)?;
     let times = recorded.time.iter().enumerate();
     let nearest = times.min_by(|(_, a), (_, b)| (*a - time).abs().total_cmp(&(*b - time).abs()));
     let Some((index, _)) = nearest else {

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-use chaindrive::record::{Existing, InStore, Provenance, take_over};
+use chaindrive::record::{Existing, Provenance, ZarrSink, take_over};
 use chaindrive::{Channel, Checkpoint, End, EventKinds, Simulation, Sink};
 use clap::{Args, ValueEnum};
 
@@ -21,9 +21,9 @@ enum Format {
     Arrow,
 }
 
-/// Where a result is wanted.
+/// Destination of a result.
 #[derive(Debug, Args)]
-pub(crate) struct Place {
+pub(crate) struct OutputArguments {
     /// Where the result goes: a Zarr store (.zarr), readable while it grows, a table (.csv), or - for a table on
     /// standard output
     #[arg(short, long, value_name = "OUT")]
@@ -42,8 +42,8 @@ pub(crate) struct Place {
     take_over: bool,
 }
 
-impl Place {
-    /// What becomes of an earlier result; the folder of its writer is taken over where that is asked for.
+impl OutputArguments {
+    /// Fate of an earlier result; the folder of its writer is taken over on request.
     pub(crate) fn existing(&self) -> Result<Existing, Failure> {
         if let Some(path) = self.output.as_ref().filter(|_| self.take_over) {
             take_over(path)?;
@@ -56,7 +56,7 @@ impl Place {
     }
 }
 
-/// Where the samples go, by the name asked for.
+/// Destination of the samples, by its name.
 #[derive(Debug)]
 pub(crate) enum Target {
     Nowhere,
@@ -68,7 +68,7 @@ pub(crate) enum Target {
 
 impl Target {
     /// The extension decides; on standard output, the format that is asked for.
-    pub(crate) fn of(place: &Place) -> Result<Self, Failure> {
+    pub(crate) fn of(place: &OutputArguments) -> Result<Self, Failure> {
         let path = match (place.output.as_deref(), place.format) {
             (Some(path), Some(Format::Arrow)) if path == Path::new("-") => {
                 let message = "--format arrow: the command of the Python package writes Arrow streams, \
@@ -118,14 +118,14 @@ impl Target {
     pub(crate) fn output(self, existing: Existing) -> Output {
         match self {
             Self::Nowhere => Output::Nowhere,
-            Self::Zarr(path) => Output::Zarr(Box::new(InStore::new(path, existing))),
+            Self::Zarr(path) => Output::Zarr(Box::new(ZarrSink::new(path, existing))),
             Self::Csv(path) => Output::NewCsv(path, existing),
             Self::Stream => Output::NewStream,
         }
     }
 }
 
-/// Where people read what came of a result.
+/// Stream on which people read the page of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Page {
     /// On stdout.
@@ -154,7 +154,7 @@ pub(crate) const ONE_DOCUMENT: &str =
 #[derive(Debug)]
 pub(crate) enum Output {
     Nowhere,
-    Zarr(Box<InStore>),
+    Zarr(Box<ZarrSink>),
     /// A table that is begun when the run is.
     NewCsv(PathBuf, Existing),
     Csv(Box<CsvWriter>),
@@ -231,7 +231,7 @@ mod tests {
     /// Arrow is left to the Python package, and the message says how to get it.
     #[test]
     fn an_arrow_stream_is_refused_with_what_to_do() {
-        let place = Place {
+        let place = OutputArguments {
             output: Some("-".into()),
             format: Some(Format::Arrow),
             overwrite: false,

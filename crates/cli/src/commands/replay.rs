@@ -4,11 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use chaindrive::SimulationError;
-use chaindrive::record::Recorded;
-use chaindrive_replay::{FilmError, MOST_FRAMES, Selection, film, page};
+use chaindrive::record::RecordedRun;
+use chaindrive_replay::{AnimationError, MOST_FRAMES, Selection, film, page};
 use clap::Args;
 
-use crate::Drawn;
+use crate::DrawingRequest;
 use crate::failure::Failure;
 use crate::progress::waiting;
 use crate::request::some;
@@ -81,10 +81,10 @@ impl Arguments {
     }
 
     /// The movie that is asked for, if it is one.
-    pub(crate) fn movie(self) -> Option<Drawn> {
+    pub(crate) fn movie(self) -> Option<DrawingRequest> {
         let output = self.output();
         let wanted = self.movie.mp4 || self.movie.gif || is_movie(&output);
-        (wanted && self.plot.is_none()).then_some(Drawn {
+        (wanted && self.plot.is_none()).then_some(DrawingRequest {
             source: self.result,
             output,
             frames: self.frames,
@@ -108,7 +108,7 @@ pub(crate) fn replay(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> R
         plots: arguments.plot.clone(),
     };
     let wanted = |channel: &str| selection.wants(channel);
-    let recorded = Recorded::open(&arguments.result, &wanted, selection.frames)?;
+    let recorded = RecordedRun::open(&arguments.result, &wanted, selection.frames)?;
     let film = waiting("drawing", interrupted, |stop| {
         film(&recorded, &selection, stop)
     });
@@ -163,10 +163,10 @@ fn check_output(output: &Path, overwrite: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-fn no_film(error: FilmError, result: &Path) -> Failure {
+fn no_film(error: AnimationError, result: &Path) -> Failure {
     match error {
-        FilmError::Scene(error) => error.into(),
-        FilmError::Stopped(SimulationError::Interrupted) => Failure::Interrupted,
+        AnimationError::Scene(error) => error.into(),
+        AnimationError::Stopped(SimulationError::Interrupted) => Failure::Interrupted,
         error => Failure::Argument(format!("{}: {error}", result.display())),
     }
 }

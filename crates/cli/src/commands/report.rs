@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::Drawn;
+use crate::DrawingRequest;
 use crate::failure::Failure;
 
 /// Makes the report of a scene or a result, one HTML file that prints well, by the command of the Python package.
@@ -29,10 +29,10 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     /// What the Python package is to make.
-    pub(crate) fn report(self) -> Drawn {
+    pub(crate) fn report(self) -> DrawingRequest {
         let named = || Path::new(&self.source).with_extension("html");
         let beside = || named().file_name().map_or_else(named, PathBuf::from);
-        Drawn {
+        DrawingRequest {
             output: self.output.clone().unwrap_or_else(beside),
             source: self.source.into(),
             frames: None,

@@ -2,19 +2,19 @@
 
 use std::path::PathBuf;
 
-use chaindrive::Given;
-use chaindrive::record::{Stopped, take_over};
+use chaindrive::SettingValue;
+use chaindrive::record::{StoppedRun, take_over};
 use clap::Args;
 
 use super::output::Page;
-use super::run::{Telling, Terminal, concluded, not_run};
+use super::run::{ReportOptions, Terminal, concluded, not_run};
 use crate::failure::Failure;
 use crate::terminal::say;
 
 const CHECKPOINTS: &str = "\
 What there is to go on from:
   Ctrl-C and SIGTERM leave a checkpoint in a Zarr result, and a run with --checkpoint-every leaves one at
-  its beginning, under way and at its end. What the result holds behind the checkpoint is simulated again:
+  its beginning, under way and at its end. What the result holds after the checkpoint is simulated again:
   in the end it is that of a run that was never stopped, to the last bit, but for the wall times.
   Only the version that wrote a checkpoint reads it.";
 
@@ -35,21 +35,24 @@ pub(crate) struct Arguments {
     take_over: bool,
 
     #[command(flatten)]
-    telling: Telling,
+    telling: ReportOptions,
 }
 
 pub(crate) fn resume(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
-    let until = arguments.until.clone().map(|until| Given::written(&until));
+    let until = arguments
+        .until
+        .clone()
+        .map(|until| SettingValue::written(&until));
     if arguments.take_over {
         take_over(&arguments.result)?;
     }
-    let stopped = Stopped::open(&arguments.result, until.as_ref())?;
+    let stopped = StoppedRun::open(&arguments.result, until.as_ref())?;
     let checkpoint = stopped.checkpoint();
     if !arguments.telling.quiet {
         let (time, until) = (checkpoint.time(), checkpoint.until());
         let samples = checkpoint.samples();
         say(format_args!(
-            "going on from t = {time:.6} s of {until} s, behind {samples} samples"
+            "going on from t = {time:.6} s of {until} s, after {samples} samples"
         ));
     }
     let scene = checkpoint.scene_name().to_owned();

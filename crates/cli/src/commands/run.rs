@@ -3,13 +3,13 @@
 use std::cell::RefCell;
 use std::path::PathBuf;
 
-use chaindrive::{Given, Onlooker, Report, RunError, Simulation, Stop, execute};
+use chaindrive::{Onlooker, Report, RunError, SettingValue, Simulation, Stop, execute};
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::output::{ONE_DOCUMENT, Page, Place, Target};
+use super::output::{ONE_DOCUMENT, OutputArguments, Page, Target};
 use crate::answer::answer;
 use crate::failure::Failure;
 use crate::progress::Progress;
@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
     run: RunArguments,
 
     #[command(flatten)]
-    place: Place,
+    place: OutputArguments,
 
     /// Simulated time between two checkpoints in a Zarr result, such as "10 ms": killed at any moment, the run goes on
     /// from the last one by `chaindrive resume`. The samples are the same as without, to the last bit
@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     no_error: bool,
 
     #[command(flatten)]
-    telling: Telling,
+    telling: ReportOptions,
 
     /// Prints JSON in place of the page: how the run ended, warnings, and the attributes of the result
     #[arg(long, conflicts_with_all = ["quiet", "numerics"])]
@@ -73,9 +73,9 @@ pub(super) enum Status {
     Failed,
 }
 
-/// How much is said of a result, and how strictly it is taken.
+/// Amount of text about a result, and strictness of the exit code.
 #[derive(Clone, Copy, Debug, Args)]
-pub(super) struct Telling {
+pub(super) struct ReportOptions {
     /// Prints errors only, and a line if the result is not to be trusted
     #[arg(short, long)]
     pub(super) quiet: bool,
@@ -106,7 +106,7 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     }
     if let Some(every) = &arguments.checkpoint_every {
         target.for_checkpoints()?;
-        let every = Given::written(every);
+        let every = SettingValue::written(every);
         let wanted = request.with_checkpoints(&every);
         request = wanted.map_err(|error| Failure::request(error, &scene))?;
     }
@@ -158,10 +158,10 @@ pub(super) fn not_run<E: std::error::Error + Into<Failure>>(
 pub(super) fn concluded(
     report: Report,
     scene: &str,
-    telling: Telling,
+    telling: ReportOptions,
     page: Page,
 ) -> Result<(), Failure> {
-    let Telling {
+    let ReportOptions {
         quiet,
         numerics,
         strict,
@@ -180,7 +180,7 @@ pub(super) fn concluded(
     ended(report, scene, strict)
 }
 
-/// How a run ended, as the exit code tells it.
+/// Exit code of a run.
 fn ended(report: Report, scene: &str, strict: bool) -> Result<(), Failure> {
     match report.stop {
         Stop::End if strict && report.verdict.is_distrusted() => Err(Failure::Distrusted {

@@ -13,7 +13,7 @@ use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::output::{ONE_DOCUMENT, Page, Place, Target};
+use super::output::{ONE_DOCUMENT, OutputArguments, Page, Target};
 use super::run::Status;
 use crate::answer::answer;
 use crate::failure::Failure;
@@ -85,7 +85,7 @@ pub(crate) struct Arguments {
     jobs: Option<usize>,
 
     #[command(flatten)]
-    place: Place,
+    place: OutputArguments,
 
     /// Prints errors only, and a line if variants are not to be trusted
     #[arg(short, long)]

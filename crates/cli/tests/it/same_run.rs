@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use chaindrive::record::{Existing, InStore};
+use chaindrive::record::{Existing, ZarrSink};
 use chaindrive::scene::presets;
-use chaindrive::{Given, Memory, Request, Scene, Settings, Stop, execute};
+use chaindrive::{Memory, Request, Scene, SettingValue, Settings, Stop, execute};
 use serde_json::Value;
 
 use crate::command_line::{attributes, run, words};
@@ -41,8 +41,8 @@ fn request(preset: &str, case: &[Choice]) -> Request {
         all.with(
             key,
             match *key {
-                "events" | "record" => Given::Names(names()),
-                _ => Given::Text((*value).to_owned()),
+                "events" | "record" => SettingValue::Names(names()),
+                _ => SettingValue::Text((*value).to_owned()),
             },
         )
     });
@@ -90,7 +90,7 @@ fn hold(preset: &str, name: &str, case: &[Choice]) {
     assert_eq!(run(folder.path(), &arguments).0, 0);
 
     let request = request(preset, case);
-    let mut store = InStore::new(at("rust.zarr"), Existing::Keep);
+    let mut store = ZarrSink::new(at("rust.zarr"), Existing::Keep);
     execute(&request, &mut store, &|| false).unwrap();
     let mut memory = Memory::default();
     let report = execute(&request, &mut memory, &|| false).unwrap();
@@ -152,7 +152,7 @@ fn recording_does_not_change_the_motion() {
             let settings = settings
                 .iter()
                 .fold(Settings::default(), |all, (key, value)| {
-                    all.with(key, Given::Text((*value).to_owned()))
+                    all.with(key, SettingValue::Text((*value).to_owned()))
                 });
             let scene = Scene::preset("spinning_ring").unwrap();
             let request = Request::new(&scene, &settings).unwrap().without_estimate();

@@ -309,7 +309,7 @@ fn on_a_full_disk_it_keeps_what_was_written() {
     assert_eq!(names(at), ["ring.csv", "ring.zarr"]);
 }
 
-/// The disk is full at every place of a row in the middle, and at every place from the last row to behind the line that
+/// The disk is full at every place of a row in the middle, and at every place from the last row to after the line that
 /// says that the table is not at its end. All rows that leave room for a closing line are kept.
 #[cfg(target_os = "linux")]
 #[test]

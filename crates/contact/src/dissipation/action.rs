@@ -1,4 +1,4 @@
-//! How a dissipation acts on the elastic force, whichever member supplied its constants.
+//! Action of a dissipation on the elastic force, whichever law supplied its constants.
 
 /// Closing speed, in units of the speed at onset, beyond which hysteretic damping grows no further.
 ///

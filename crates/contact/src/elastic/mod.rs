@@ -30,8 +30,8 @@ mod library;
 mod logarithmic;
 mod power;
 mod radzimovsky;
+mod series;
 mod specification;
-mod stack;
 
 pub use conformal::Conformal;
 pub use cylinders::Cylinders;
@@ -43,8 +43,8 @@ pub use library::{library, register};
 use logarithmic::Logarithmic;
 pub use power::Power;
 pub use radzimovsky::Radzimovsky;
-pub use specification::{Given, Linear, Spheres, Surfaces};
-pub(crate) use stack::Stack;
+pub(crate) use series::Stack;
+pub use specification::{CurveOrBodies, Linear, Spheres, Surfaces};
 
 use std::fmt::Debug;
 
@@ -175,13 +175,13 @@ macro_rules! family {
 
         impl Specification {
             /// The law where its own curve is specified, otherwise which law of which bodies.
-            pub fn given(self) -> Given {
+            pub fn given(self) -> CurveOrBodies {
                 match self {
-                    Self::Linear(Linear { stiffness }) => Given::Curve(Power::linear(stiffness).into()),
-                    $(Self::$curve(law) => Given::Curve(law.into()),)*
-                    Self::Hertz(bodies) => Given::Bodies(CylinderLaw::Hertz, bodies.into()),
-                    $(Self::$law(bodies) => Given::Bodies(CylinderLaw::$law, bodies),)*
-                    Self::Registered(law) => Given::Curve(law.into()),
+                    Self::Linear(Linear { stiffness }) => CurveOrBodies::Curve(Power::linear(stiffness).into()),
+                    $(Self::$curve(law) => CurveOrBodies::Curve(law.into()),)*
+                    Self::Hertz(bodies) => CurveOrBodies::Bodies(CylinderLaw::Hertz, bodies.into()),
+                    $(Self::$law(bodies) => CurveOrBodies::Bodies(CylinderLaw::$law, bodies),)*
+                    Self::Registered(law) => CurveOrBodies::Curve(law.into()),
                 }
             }
 

@@ -7,7 +7,7 @@ use super::{CylinderLaw, Elastic};
 
 /// The law, or the bodies, of a specification.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Given {
+pub enum CurveOrBodies {
     /// A law by its own parameters.
     Curve(Elastic),
     /// Bodies that touch, and the law that they are to make.

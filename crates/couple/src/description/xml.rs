@@ -1,4 +1,4 @@
-//! Elements with attributes, one behind the other.
+//! Elements with attributes, one after the other.
 
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, Event};

@@ -1,4 +1,4 @@
-//! How many links a set of wheels takes, and the nearest place in a motion at which a number of them closes.
+//! Numbers of links that close around a set of wheels, and the nearest position of a moved wheel at which a number closes.
 
 use super::Closing;
 use super::misfit::does_not_close;
@@ -8,7 +8,7 @@ use crate::{GeometryError, Route, Wheel};
 /// A misfit below this part of a pitch \[–\] is rounding: the count fits as it is.
 const FITS: f64 = 1e-9;
 
-/// How many links a closed chain can have around wheels that stand where they are.
+/// Numbers of links of a closed chain around wheels that stand where they are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkCounts {
     /// Length of the exact polygon in pitches, which is whole for a chain that closes \[–\].

@@ -3,7 +3,7 @@
 use super::Closing;
 use crate::{GeometryError, Wheel};
 
-/// Where a search for a place that closes begins, and how far it goes.
+/// Start and range of a search for a position that closes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Search {
     /// Where it begins \[m or rad\].

@@ -5,7 +5,7 @@ use parry2d_f64::math::Vector;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 
 use super::to_parry;
-use crate::closest::Place;
+use crate::closest::PiecePart;
 use crate::{BoundingBox, Point};
 
 /// Boxes around the pieces of a curve.
@@ -28,8 +28,8 @@ impl Tree {
         &self,
         p: Point,
         reach: f64,
-        ask: impl Fn(usize) -> Option<(Place, f64)>,
-    ) -> Option<(usize, (Place, f64))> {
+        ask: impl Fn(usize) -> Option<(PiecePart, f64)>,
+    ) -> Option<(usize, (PiecePart, f64))> {
         let p = to_parry(p);
         // Squares save the roots; the tree compares strictly, so let the limit itself pass.
         let limit = if reach >= 0.0 {

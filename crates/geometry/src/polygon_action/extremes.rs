@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::{Driven, Linkage, PolygonAction};
+use super::{DrivenState, Linkage, PolygonAction};
 
 impl PolygonAction {
     /// Least and greatest speed ratio ω₂/ω₁ over a period \[–\].
@@ -27,8 +27,8 @@ impl PolygonAction {
     /// Extremes over a period of a quantity that is smooth between the events, `slope` having the sign of its rate.
     fn extremes(
         &self,
-        quantity: impl Fn(&Driven) -> f64,
-        slope: impl Fn(&Driven) -> f64,
+        quantity: impl Fn(&DrivenState) -> f64,
+        slope: impl Fn(&DrivenState) -> f64,
     ) -> (f64, f64) {
         const PIECES: u32 = 32;
         let period = 2.0 * self.half()[0];

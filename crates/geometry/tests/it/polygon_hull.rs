@@ -11,7 +11,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use chaindrive_geometry::{Driven, Point, PolygonAction, Vector};
+use chaindrive_geometry::{DrivenState, Point, PolygonAction, Vector};
 
 /// Largest deviation from a reference, for the report.
 struct Deviation {
@@ -69,7 +69,7 @@ fn linkage_is_consistent() {
                 continue;
             }
             let (before, behind) = (drive.driven(at - step), drive.driven(at + step));
-            let slope = |f: fn(&Driven) -> f64| (f(&behind) - f(&before)) / (2.0 * step);
+            let slope = |f: fn(&DrivenState) -> f64| (f(&behind) - f(&before)) / (2.0 * step);
             ratio.note(slope(|s| s.angle), state.ratio);
             rate.note(slope(|s| s.ratio), state.ratio_rate);
             let next = drive.driven(at + period);

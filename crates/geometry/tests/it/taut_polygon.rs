@@ -24,7 +24,7 @@ fn ring() -> impl Strategy<Value = Vec<Wheel>> {
 #[derive(Clone, Debug)]
 struct Guided {
     wheels: Vec<Wheel>,
-    /// Radius of the shoe behind a wheel, and how far it presses on the span there.
+    /// Radius of the shoe after a wheel, and how far it presses on the span there.
     shoes: Vec<Option<(f64, f64)>>,
 }
 

@@ -3,7 +3,7 @@
 use crate::problems;
 
 use chaindrive_integrate::{
-    Continuity, IntegrationError, Method, Moment, Quantity, SecondOrderSystem, State,
+    Continuity, IntegrationError, Method, Moment, SecondOrderSystem, State, StateQuantity,
 };
 use problems::{Oscillator, Smooth};
 
@@ -39,7 +39,7 @@ fn a_nan_stops_the_run_and_says_where() {
             panic!("{error}");
         };
         assert!((1.0..1.02).contains(&t), "{t}");
-        assert_eq!((dof, quantity), (1, Quantity::Acceleration));
+        assert_eq!((dof, quantity), (1, StateQuantity::Acceleration));
         assert!(state.q.iter().chain(&state.v).all(|x| x.is_finite()));
         println!("{error}");
     }
@@ -50,7 +50,7 @@ fn a_nan_at_the_start_is_refused() {
     for method in Method::specimens(0.01) {
         let mut state = State::new(0.0, vec![0.0], vec![f64::NAN]);
         let error = method.start(&mut Oscillator, &mut state).unwrap_err();
-        let quantity = Quantity::Velocity;
+        let quantity = StateQuantity::Velocity;
         let expected = |t| IntegrationError::NotFinite {
             t,
             dof: 0,

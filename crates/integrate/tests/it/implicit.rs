@@ -4,7 +4,8 @@
 use crate::problems;
 
 use chaindrive_integrate::{
-    IntegrationError, Method, Moment, Quantity, SecondOrderSystem, State, Stepper, Verdict, Weights,
+    IntegrationError, Method, Moment, SecondOrderSystem, State, StateQuantity, Stepper, Verdict,
+    Weights,
 };
 use problems::Oscillator;
 
@@ -500,6 +501,6 @@ fn a_nan_stops_the_run_and_says_where() {
             panic!("{error}");
         };
         assert!((1.0..1.02).contains(&t), "{t}");
-        assert_eq!((dof, quantity), (1, Quantity::Acceleration));
+        assert_eq!((dof, quantity), (1, StateQuantity::Acceleration));
     }
 }

@@ -11,7 +11,7 @@
 
 use chaindrive_integrate::Moment;
 
-use super::setting_off::spread;
+use super::start_velocities::spread;
 use crate::bodies::{Bodies, Shaft};
 use crate::course::Path;
 use crate::drive::{Layout, Parts, Rotation, StartSpeed};
@@ -162,8 +162,7 @@ impl FreeTrain {
         self.shafts.iter().map(torque).collect()
     }
 
-    /// Whether its torques decide alone how it sets off: no strand holds it, and no angle is looked for at which they balance, as they do in the mean
-    /// over a turn.
+    /// Whether its torques alone set it in motion: no strand holds it, and its torques balance in the mean over a turn, not at an angle.
     fn sets_off(&self, system: &System) -> bool {
         let shafts = &system.bodies.shafts;
         let mut torques = torques_of(shafts, &self.shafts);

@@ -3,7 +3,7 @@
 use chaindrive_integrate::Moment;
 
 use super::free_trains::Torques;
-use super::setting_off::spread;
+use super::start_velocities::spread;
 use crate::bodies::TurnedBy;
 use crate::drive::{Layout, Parts, Stop};
 use crate::system::System;
@@ -107,7 +107,7 @@ fn torques(system: &System, q: &[f64], given: Option<&Torques>) -> Vec<f64> {
     on.collect()
 }
 
-/// What every sprocket asks of a chain, with all that turns with it by way of gears, couplings and other chains.
+/// Pull of every sprocket on a chain, with all that turns with it through gears, couplings and other chains.
 ///
 /// ```text
 /// F = Σ c M/(s R)      c: speed of a shaft over that of the sprocket, s: sense of its turning, R: its pitch radius

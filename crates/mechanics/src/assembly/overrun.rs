@@ -6,9 +6,9 @@ use chaindrive_geometry::{Arc, ArcSpline, Piece, Route, Side};
 
 use super::wheels::wheels;
 use crate::Clash;
+use crate::body_positions::BodyPositions;
 use crate::check::clash::called;
 use crate::drive::{Layout, Parts, Stop};
-use crate::standing::Standing;
 
 /// Angle \[rad\] by which a face may end too early. *Assumed*: the links of a chain turn by more than that from one to the next on any
 /// guide that is bent at all, and an edge that turns them by less presses no harder than the face.
@@ -21,7 +21,7 @@ const NEGLIGIBLE: f64 = 0.5 * std::f64::consts::PI / 180.0;
 /// ```
 ///
 /// Guides beside the route do not turn the chain as it is laid, and are not looked at.
-pub(super) fn of(parts: &Parts, index: usize, standing: &Standing) -> Vec<Clash> {
+pub(super) fn of(parts: &Parts, index: usize, standing: &BodyPositions) -> Vec<Clash> {
     let placed = &parts.chains[index];
     let Layout::Route { stops, .. } = &placed.layout else {
         return Vec::new();
@@ -88,7 +88,7 @@ pub(super) fn of(parts: &Parts, index: usize, standing: &Standing) -> Vec<Clash>
 }
 
 /// The parts with sprockets and faces where they stand.
-fn stood(parts: &Parts, standing: &Standing) -> Parts {
+fn stood(parts: &Parts, standing: &BodyPositions) -> Parts {
     let mut parts = parts.clone();
     for (sprocket, (centre, _)) in parts.sprockets.iter_mut().zip(&standing.sprockets) {
         sprocket.centre = *centre;
@@ -99,7 +99,7 @@ fn stood(parts: &Parts, standing: &Standing) -> Parts {
     parts
 }
 
-/// The bulging arc that the route lies on, and the angles by which the face turns before and behind it.
+/// The bulging arc that the route lies on, and the angles by which the face turns before and after it.
 fn longest_arc(face: &ArcSpline) -> Option<(f64, Arc, f64)> {
     let pieces = face.pieces();
     let arcs = pieces

@@ -74,7 +74,7 @@ pub(super) fn strain(
     Ok(pull / (stiffness * chain.pitch) - excess / free)
 }
 
-/// Roller positions with all slack in one span, and where the chain is seated. The phase is that of the sprocket behind the slack span.
+/// Roller positions with all slack in one span, and the seats of the chain. The phase is that of the sprocket after the slack span.
 ///
 /// The bow is a regular polygon of unstretched links; settling turns it into the
 /// catenary.
@@ -85,7 +85,7 @@ pub(super) fn sagging(
     phase: f64,
     down: Vector,
 ) -> Result<(Vec<Point>, Closing), AssemblyError> {
-    // Laid from the stop behind the slack span on, so that this is the last one.
+    // Laid from the stop after the slack span on, so that this is the last one.
     let first = (span + 1) % wheels.len();
     let mut ordered = wheels.to_vec();
     ordered.rotate_left(first);

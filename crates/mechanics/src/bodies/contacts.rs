@@ -11,8 +11,8 @@ use crate::surface::Surface;
 /// Contacts with sprockets, then with guides.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BodyContacts {
-    pub(crate) teeth: Vec<OnWheel>,
-    pub(crate) rails: Vec<OnRail>,
+    pub(crate) teeth: Vec<WheelContacts>,
+    pub(crate) rails: Vec<GuideContacts>,
 }
 
 impl BodyContacts {
@@ -24,7 +24,7 @@ impl BodyContacts {
 
 /// Contacts with the teeth of one sprocket.
 #[derive(Clone, Debug)]
-pub(crate) struct OnWheel {
+pub(crate) struct WheelContacts {
     /// Which one.
     pub(crate) wheel: usize,
     /// Whether no chain before this one touches it.
@@ -40,7 +40,7 @@ pub(crate) struct OnWheel {
 
 /// Contacts with one guide.
 #[derive(Clone, Debug)]
-pub(crate) struct OnRail {
+pub(crate) struct GuideContacts {
     /// Which one.
     pub(crate) rail: usize,
     /// Whether no chain before this one touches it.
@@ -50,7 +50,7 @@ pub(crate) struct OnRail {
     pub(crate) impacts: Impacts,
 }
 
-/// What of the chain touches a guide.
+/// Parts of the chain that touch a guide: rollers, or plates.
 #[derive(Clone, Debug)]
 pub(crate) enum RailContact {
     Circles(Contacts),
@@ -78,7 +78,7 @@ impl BodyContacts {
         }
     }
 
-    /// How the origins of the frames go on with the tensioners that carry them.
+    /// Derivatives of the frame origins by the coordinates of the tensioners that carry them.
     pub(crate) fn ways(
         &self,
         bodies: &Bodies,

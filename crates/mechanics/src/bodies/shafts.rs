@@ -7,7 +7,7 @@ use crate::course::Path;
 use crate::kinematics::Kinematics;
 use crate::{Coupling, Motion, ShaftLoss, Torque};
 
-/// How an angle follows from time or state.
+/// Angle of a shaft as a function of time or state.
 ///
 /// ```text
 /// θ = z + i x,   x: a motion given in time, or a coordinate
@@ -156,7 +156,7 @@ impl Bodies {
         self.renew_rates();
     }
 
-    /// Goes on behind the ramps that end at a time \[s\]; whether there are any.
+    /// Goes on after the ramps that end at a time \[s\]; whether there are any.
     pub(crate) fn arrive(&mut self, t: f64) -> bool {
         let mut arrives = false;
         for turn in self.turns_mut() {
@@ -210,7 +210,7 @@ impl Bodies {
             .sum()
     }
 
-    /// What turns under losses, in the order of their damping: sprockets, then shafts.
+    /// Angles subject to losses, in the order of their damping: sprockets, then shafts.
     pub(crate) fn resisted(&self) -> impl Iterator<Item = &Turn> {
         let wheels = self.wheels.iter().map(|wheel| &wheel.turn);
         wheels.chain(self.shafts.iter().map(|shaft| &shaft.turn))

@@ -4,7 +4,7 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Prediction;
 
 use crate::seam::Way;
-use crate::tensioner::{Extension, Reduced, Slopes, Weight};
+use crate::tensioner::{Extension, ReducedInertia, Slopes, Weight};
 use crate::{Carrier, Push, PushForce};
 
 /// A tensioner in the system.
@@ -23,7 +23,7 @@ pub(crate) struct Slide {
     pub(crate) carried: Vec<Weight>,
 }
 
-/// Where a carrier is.
+/// Pose of a carrier.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Pose {
     pub(crate) coordinate: f64,
@@ -44,7 +44,7 @@ impl Slide {
         (place, first * pose.rate)
     }
 
-    /// How easily a force at some place moves the carrier where it is assembled \[1/kg\].
+    /// Mobility of the carrier under a force at a place, as assembled \[1/kg\].
     pub(crate) fn mobility(&self, at: Point) -> f64 {
         let lever = || self.carrier.squared_lever(0.0, at);
         self.dof.map_or(0.0, |_| lever() / self.inertia)
@@ -56,7 +56,7 @@ impl Slide {
         first.x * force[0] + first.y * force[1]
     }
 
-    /// How a carried point goes on with the coordinate; none where it stands still.
+    /// Derivatives of a carried point by the coordinate; none where it does not move.
     pub(crate) fn way(&self, pose: Pose, place: Point) -> Option<Way> {
         let entry = self.dof?;
         let [first, second] = self.carrier.ways(pose.coordinate, place);
@@ -123,7 +123,7 @@ impl Slide {
         (force, lever)
     }
 
-    /// What the push stores \[J\].
+    /// Energy stored in the push \[J\].
     pub(crate) fn stored(&self, pose: Pose, z: &[f64]) -> f64 {
         let Extension { length, .. } = self.carrier.extension(pose.coordinate);
         self.push.energy(length, self.state(z))
@@ -135,7 +135,7 @@ impl Slide {
         self.push.pressure(length, self.state(z))
     }
 
-    /// What a state of the push adds to the derivatives by the coordinate.
+    /// Contribution of the state of the push to the derivatives by the coordinate.
     pub(crate) fn slopes(&self, pose: Pose, state: f64) -> Slopes {
         if self.state.is_none() {
             return Slopes::default();
@@ -188,7 +188,7 @@ impl Slide {
     }
 
     /// Inertia as it now is.
-    pub(crate) fn reduced(&self, pose: Pose) -> Reduced {
+    pub(crate) fn reduced(&self, pose: Pose) -> ReducedInertia {
         self.carrier.reduced(pose.coordinate, &self.carried)
     }
 

@@ -1,4 +1,4 @@
-//! What a chain sees of the rest of its drive.
+//! The rest of the drive, as a chain reads it.
 
 use chaindrive_integrate::Prediction;
 
@@ -13,6 +13,6 @@ pub(crate) struct Surroundings<'a> {
     pub(crate) first: usize,
     /// The chain's contacts with them.
     pub(crate) contacts: &'a BodyContacts,
-    /// How the velocities of the chain were predicted, if they were.
+    /// Prediction of the velocities of the chain, if there is one.
     pub(crate) prediction: Option<Prediction<'a>>,
 }

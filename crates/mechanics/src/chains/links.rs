@@ -15,26 +15,26 @@ pub(crate) mod build;
 mod by_link;
 mod drag;
 mod equations;
-mod held;
+mod free_rollers;
 mod hinge;
+mod ideal_joints;
 mod implicit;
 mod impulses;
-pub(crate) mod inside;
-mod loose;
+mod joint_torques;
 mod meshing;
 pub(crate) mod model;
 mod observe;
 mod posture;
 pub(crate) mod rates;
 mod reactions;
-mod resist;
+pub(crate) mod test_access;
 
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Array, Moment};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-pub(crate) use blocks::Blocks;
+pub(crate) use blocks::BorderedBlocks;
 pub(crate) use hinge::Hinges;
 pub(crate) use impulses::Impulses;
 pub(crate) use posture::{Posture, Shapes, free_part};
@@ -42,7 +42,7 @@ pub(crate) use posture::{Posture, Shapes, free_part};
 use crate::End;
 use crate::bodies::Surroundings;
 use crate::chains::series::Series;
-use crate::contact::{Bearing, ContactMemory, Kept, LaneTally, MemoryLanes, Tally};
+use crate::contact::{BoreContact, ContactMemory, LaneTally, MemoryField, MemoryLanes, Tally};
 use crate::energy::Flow;
 use crate::joints::{
     Element, JointFindings, JointMates, JointMemory, Mate, Mount, Pairs, Part, Partner, Pins,
@@ -63,20 +63,20 @@ pub(crate) struct Body {
 /// Rollers loose on their bushes.
 #[derive(Clone, Debug)]
 pub(crate) struct FreeRollers {
-    pub(crate) bearing: Bearing,
+    pub(crate) bearing: BoreContact,
     /// Body of the roller at every joint.
     pub(crate) body: Vec<Option<usize>>,
     /// The link that each of them sits on.
     pub(crate) link: Vec<usize>,
 }
 
-/// How neighbouring links are joined.
+/// Connection of neighbouring links.
 #[derive(Clone, Debug)]
 pub(crate) enum Joining {
     /// Ends held together.
     Hinges(Hinges),
     /// A pin in every bush.
-    Clearance(Box<Bearing>),
+    Clearance(Box<BoreContact>),
 }
 
 /// A chain of rigid links.
@@ -98,9 +98,9 @@ pub(crate) struct Linkage {
     pub(crate) elongation: f64,
 }
 
-/// What the kernel of the teeth wants of rollers beside their places and velocities.
+/// Roller arrays that the kernel of the teeth expects beside positions and velocities.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Idle {
+pub(crate) struct RollerArrays {
     /// Accelerations that it adds to, and inverse masses: of links neither is used.
     pub(crate) ax: Array,
     pub(crate) ay: Array,
@@ -128,7 +128,7 @@ pub(crate) struct JointState {
     #[serde(skip)]
     pub(crate) reactions: reactions::Reactions,
     #[serde(skip)]
-    pub(crate) answers: held::Answers,
+    pub(crate) answers: ideal_joints::Answers,
     /// Forces on the links, and what ideal joints do to them.
     #[serde(skip)]
     pub(crate) loads: by_link::ByLink,
@@ -137,10 +137,10 @@ pub(crate) struct JointState {
     pub(crate) normal: Array,
     /// Stiffness, damping and springs of friction by body, for the time scales.
     #[serde(skip)]
-    pub(crate) sums: Vec<[rates::Packed; 3]>,
+    pub(crate) sums: Vec<[rates::SymmetricMatrix; 3]>,
     /// Accelerations and inverse masses of particles, which the kernel of the teeth asks for and links have no use for.
     #[serde(skip)]
-    pub(crate) idle: Idle,
+    pub(crate) idle: RollerArrays,
 }
 
 /// Findings and work space of an evaluation.
@@ -314,12 +314,15 @@ impl Linkage {
     pub(crate) fn stored(&self, memory: &JointMemory) -> f64 {
         let mut sum = 0.0;
         if let Joining::Clearance(bearing) = &self.joining {
-            let gaps = memory.pins.each(Kept::Gap).take(self.joints.len());
+            let gaps = memory.pins.each(MemoryField::Gap).take(self.joints.len());
             let closed = gaps.filter(|gap| *gap < 0.0);
             sum += closed.map(|gap| bearing.energy(gap)).sum::<f64>();
         }
         if let Some(free) = &self.free_rollers {
-            let closed = memory.bushes.each(Kept::Gap).filter(|gap| *gap < 0.0);
+            let closed = memory
+                .bushes
+                .each(MemoryField::Gap)
+                .filter(|gap| *gap < 0.0);
             sum += closed.map(|gap| free.bearing.energy(gap)).sum::<f64>();
         }
         sum
@@ -332,7 +335,10 @@ impl Linkage {
         };
         let friction = &bearing.lanes.friction;
         let joints = &memory.pins;
-        let state = |joint| [Kept::Gap, Kept::Force, Kept::Stick].map(|it| joints.get(it, joint));
+        let state = |joint| {
+            [MemoryField::Gap, MemoryField::Force, MemoryField::Stick]
+                .map(|it| joints.get(it, joint))
+        };
         let closed = (0..joints.len()).map(state).filter(|[gap, ..]| *gap < 0.0);
         // U = ½ k z²
         closed

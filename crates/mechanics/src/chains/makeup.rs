@@ -2,7 +2,7 @@
 //!
 //! A member answers those without an answer here; the answers that are given here hold for every member that keeps them.
 
-use chaindrive_contact::Prepared;
+use chaindrive_contact::PreparedLaw;
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Moment, Weights};
 
@@ -39,7 +39,7 @@ pub(crate) trait Makeup: Statics {
     /// Gives rollers at these places these velocities.
     fn set_off(&self, places: &[Point], velocities: &[Vector], v: &mut [f64]);
 
-    /// Where the rollers are.
+    /// Pose of the rollers.
     fn pose<'a>(&self, at: Moment<'a>, work: &'a mut Self::Work) -> Pose<'a>;
 
     /// Accelerations of the chain, its powers, and what the bodies feel of it.
@@ -88,11 +88,11 @@ pub(crate) trait Makeup: Statics {
     }
 
     /// Laws of pins in bushes with clearance, and of bushes in free rollers.
-    fn bearing_laws(&self) -> [Option<Prepared>; 2] {
+    fn bearing_laws(&self) -> [Option<PreparedLaw>; 2] {
         [None, None]
     }
 
-    /// What the contacts of link plates with a guide store \[J\].
+    /// Energy stored in the contacts of link plates with a guide \[J\].
     fn plate_energy(
         &self,
         at: Moment<'_>,
@@ -126,7 +126,7 @@ pub(crate) trait Makeup: Statics {
         0.0
     }
 
-    /// x ← (M + c C + k K)⁻¹ M x over the chain and, behind it, the bodies of its group; false where there is no answer.
+    /// x ← (M + c C + k K)⁻¹ M x over the chain and, after it, the bodies of its group; false where there is no answer.
     fn solve(
         &self,
         _bodies: GroupBodies<'_>,
@@ -150,10 +150,10 @@ pub(crate) trait Statics {
     /// Coordinates that are unknown in equilibrium, which are those that can move, in an order that keeps neighbours together.
     fn unknowns(&self) -> Vec<Unknown>;
 
-    /// How the circle that runs on the teeth moves with the coordinates.
+    /// Derivatives of the circle that runs on the teeth by the coordinates.
     fn roller_moving(&self, q: &[f64], roller: usize) -> Moving;
 
-    /// How the first (0) or second (1) pin of a link moves with the coordinates.
+    /// Derivatives of the first (0) or second (1) pin of a link by the coordinates.
     fn pin_moving(&self, q: &[f64], link: usize, end: usize) -> Moving;
 
     /// Adds the energy of links or joints, weight, and forces at the ends.
@@ -191,6 +191,6 @@ pub(crate) trait Statics {
     /// Visits the joints that no energy but a condition holds together: the pin and its hole, where they move.
     fn each_hinge(&self, _q: &[f64], _visit: impl FnMut([Moving; 2])) {}
 
-    /// Brings velocities of the chain and, behind it, the bodies to where no joint opens.
+    /// Brings velocities of the chain and, after it, the bodies to where no joint opens.
     fn close_in_motion(&self, _begin: f64, _bodies: GroupBodies<'_>, _q: &[f64], _v: &mut [f64]) {}
 }

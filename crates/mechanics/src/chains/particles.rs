@@ -4,7 +4,7 @@
 //! q = [ x of the rollers | y of the rollers ]
 //! ```
 //!
-//! The roller arrays are padded to whole lanes. Behind the last roller of a closed chain stand
+//! The roller arrays are padded to whole lanes. After the last roller of a closed chain stand
 //! copies of the first ones; they are given the accelerations of their originals and so follow
 //! them bit by bit, and the loops never wrap around.
 
@@ -85,7 +85,7 @@ impl Particles {
         Point::new(q[roller], q[self.series.stride + roller])
     }
 
-    /// Place and velocity of one roller; the index behind the last link of a closed chain means its
+    /// Place and velocity of one roller; the index after the last link of a closed chain means its
     /// first roller.
     #[inline(always)]
     pub(super) fn pin(&self, at: Moment<'_>, roller: usize) -> (Point, Vector) {
@@ -201,7 +201,7 @@ impl Makeup for Particles {
         [&*self.masses, &self.masses].concat()
     }
 
-    /// Copies behind the last roller get the velocities of their originals.
+    /// Copies after the last roller get the velocities of their originals.
     fn set_off(&self, _places: &[Point], velocities: &[Vector], v: &mut [f64]) {
         for (i, velocity) in velocities.iter().enumerate() {
             v[i] = velocity.x;

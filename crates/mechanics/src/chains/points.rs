@@ -7,7 +7,7 @@
 //!                   ◎ roller, around the bush     tooth ↔ roller ↔ bush ↔ pin
 //! ```
 //!
-//! All blocks are as long as the rollers' of the plain particle chain, copies of the first ones behind the last included. Links are
+//! All blocks are as long as the rollers' of the plain particle chain, copies of the first ones after the last included. Links are
 //! springs between ends and pull nothing else, so that what is stiff stands in one joint: an implicit step solves the contacts of
 //! each joint by themselves, several joints at a time (`damp.rs`).
 
@@ -18,7 +18,7 @@ pub(crate) mod model;
 mod observe;
 mod statics;
 
-use chaindrive_contact::Prepared;
+use chaindrive_contact::PreparedLaw;
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Weights;
 use chaindrive_integrate::{Array, Moment};
@@ -29,7 +29,7 @@ use super::particles::{Links, Turning};
 use crate::bodies::{GroupBodies, Surroundings};
 use crate::chains::makeup::{Makeup, Statics};
 use crate::chains::series::Series;
-use crate::contact::{Bearing, Drawn, OfPins, PlatePins};
+use crate::contact::{BoreContact, OfPins, PinAccelerations, PlatePins};
 use crate::energy::Energy;
 use crate::joints::JointFindings;
 use crate::lanes::Wide;
@@ -43,8 +43,8 @@ pub(crate) struct Points {
     series: Series,
     pub(super) links: Links,
     /// Pins in bushes, and bushes in rollers.
-    pin: Bearing,
-    bush: Bearing,
+    pin: BoreContact,
+    bush: BoreContact,
     /// Stiffness of both where they hardly touch \[N/m\]: that of contacts which are open now.
     shallow: [f64; 2],
     /// One where the end after a joint is the bush, zero elsewhere.
@@ -67,26 +67,26 @@ const AFTER: usize = 2;
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Work {
     pub(crate) joints: JointFindings,
-    /// How the links turn, where something resists that.
+    /// Directions of the links, where something resists their turning.
     #[serde(skip)]
     turning: Turning,
-    pins: Held,
-    bushes: Held,
+    pins: JointContacts,
+    bushes: JointContacts,
     /// Closed contacts of rollers with wheels and rails.
-    touching: Vec<damp::Touching>,
+    touching: Vec<damp::ClosedContact>,
     /// Coordinates that each of these moves with.
     mounts: Vec<[usize; 3]>,
     /// Rollers with them, in the matrix and on the right of an implicit step.
     #[serde(skip)]
-    pressed: damp::Pressed,
+    pressed: damp::RollerBlocks,
     /// Wheels and rails by themselves, in an implicit step.
     #[serde(skip)]
-    own: damp::Own,
+    own: damp::BodyEquations,
 }
 
 /// Contacts of one kind in all joints, whole lanes.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct Held {
+struct JointContacts {
     /// n, from the centre of what has the bore to that of what turns in it, or back.
     normal_x: Array,
     normal_y: Array,
@@ -99,7 +99,7 @@ struct Held {
     damped: f64,
 }
 
-impl Held {
+impl JointContacts {
     fn resize(&mut self, count: usize) {
         if self.force.len() == count {
             return;
@@ -150,7 +150,7 @@ impl PlatePins for Ends<'_> {
 
     /// An end that is struck in its joint moves at once.
     #[inline(always)]
-    fn drawn<S: Simd>(&self, _w: Wide<S>, _link: usize) -> Option<Drawn<S>> {
+    fn drawn<S: Simd>(&self, _w: Wide<S>, _link: usize) -> Option<PinAccelerations<S>> {
         None
     }
 
@@ -287,7 +287,7 @@ impl Makeup for Points {
         self.series.rollers
     }
 
-    fn bearing_laws(&self) -> [Option<Prepared>; 2] {
+    fn bearing_laws(&self) -> [Option<PreparedLaw>; 2] {
         [&self.pin, &self.bush].map(|bearing| Some(bearing.law))
     }
 

@@ -4,7 +4,7 @@ use chaindrive_geometry::Point;
 use chaindrive_integrate::Registers;
 
 use super::chain::Chain;
-use super::held_end::{HeldEnd, held_ends};
+use super::strand_ends::{HeldEnd, held_ends};
 use crate::joints::{JointMemory, Joints};
 use crate::{End, Motion};
 
@@ -13,13 +13,13 @@ use crate::{End, Motion};
 pub(crate) struct Series {
     pub(crate) rollers: usize,
     pub(crate) links: usize,
-    /// Length of the roller arrays, copies of the first rollers behind the last included.
+    /// Length of the roller arrays, copies of the first rollers after the last included.
     pub(crate) stride: usize,
     /// Nominal pitch \[m\].
     pub(crate) pitch: f64,
     /// None: the chain is closed.
     pub(crate) ends: Vec<HeldEnd>,
-    /// What resists in the joints beside the contacts of pins and bushes, if anything.
+    /// Resistance in the joints beside the contacts of pins and bushes, if there is any.
     pub(crate) joints: Option<Joints>,
     /// Contacts in the joints at the last accepted state.
     pub(crate) memory: JointMemory,

@@ -6,15 +6,19 @@
 
 use chaindrive_geometry::{ArcSpline, Piece, Point, Segment};
 
+use crate::body_positions::BodyPositions;
 use crate::drive::{GuideSupport, Parts, PlacedChain, Support, Touches};
-use crate::standing::Standing;
 use crate::{Clash, DriveError, Ends};
 
 /// Overlaps below this \[m\] are touching: the scale of roughness and rounding.
 const TOUCHING: f64 = 1e-6;
 
 /// Everything in one another's way where the bodies stand so and the rollers of the chains lie there.
-pub(crate) fn clashes(parts: &Parts, standing: &Standing, rollers: &[Vec<Point>]) -> Vec<Clash> {
+pub(crate) fn clashes(
+    parts: &Parts,
+    standing: &BodyPositions,
+    rollers: &[Vec<Point>],
+) -> Vec<Clash> {
     let centres = standing.sprockets.iter().map(|(centre, _)| *centre);
     let mut found = sprockets(parts, &centres.collect::<Vec<_>>());
     found.extend(teeth(parts, standing));
@@ -81,7 +85,7 @@ fn sprockets(parts: &Parts, centres: &[Point]) -> Vec<Clash> {
     found
 }
 
-fn teeth(parts: &Parts, standing: &Standing) -> Vec<Clash> {
+fn teeth(parts: &Parts, standing: &BodyPositions) -> Vec<Clash> {
     let mut found = Vec::new();
     for (j, guide) in parts.guides.iter().enumerate() {
         for (i, sprocket) in parts.sprockets.iter().enumerate() {
@@ -108,7 +112,7 @@ fn teeth(parts: &Parts, standing: &Standing) -> Vec<Clash> {
 }
 
 /// Fixed guides that cut into the teeth of sprockets in fixed bearings, and cannot pass beside them.
-pub(crate) fn fixed_in_teeth(parts: &Parts, standing: &Standing) -> Vec<Clash> {
+pub(crate) fn fixed_in_teeth(parts: &Parts, standing: &BodyPositions) -> Vec<Clash> {
     let stands = |clash: &Clash| {
         let Clash::Teeth {
             guide, sprocket, ..
@@ -126,7 +130,7 @@ pub(crate) fn fixed_in_teeth(parts: &Parts, standing: &Standing) -> Vec<Clash> {
 }
 
 /// Guides on the same support are one body, whose faces may cross.
-fn guides(parts: &Parts, standing: &Standing) -> Vec<Clash> {
+fn guides(parts: &Parts, standing: &BodyPositions) -> Vec<Clash> {
     let mut found = Vec::new();
     for (i, first) in parts.guides.iter().enumerate() {
         for (j, second) in parts.guides.iter().enumerate().skip(i + 1) {

@@ -34,7 +34,7 @@ pub struct Impact {
 
 /// An impact that has not ended.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Lasting {
+struct OngoingImpact {
     impact: Impact,
     /// Force at the last accepted state \[N\].
     force: f64,
@@ -47,9 +47,9 @@ struct Lasting {
 pub(crate) struct Arrivals {
     /// Nearby rollers that have struck, by roller.
     struck: Vec<bool>,
-    /// Whether nobody has looked yet which rollers lie on the body.
+    /// Whether the rollers that already lie on the body are still to be found.
     fresh: bool,
-    lasting: Vec<Lasting>,
+    lasting: Vec<OngoingImpact>,
     ended: Vec<Impact>,
     /// Room for the next `struck`.
     #[serde(skip)]
@@ -57,7 +57,7 @@ pub(crate) struct Arrivals {
 }
 
 impl Arrivals {
-    /// Begins anew: what lies on the body has come before, what is on its way to it is to come.
+    /// Starts again: rollers on the body have arrived before, those on their way are still to arrive.
     pub(crate) fn begin(&mut self, rollers: usize) {
         self.lasting.clear();
         self.ended.clear();
@@ -70,7 +70,7 @@ impl Arrivals {
         self.ended.reserve(rollers);
     }
 
-    /// Takes note of which rollers are near, once they have been looked for again.
+    /// Marks the rollers that are near, after the windows were renewed.
     pub(crate) fn look_around(&mut self, contacts: &Contacts) {
         let Self { struck, next, .. } = self;
         next.clear();
@@ -145,7 +145,7 @@ impl Arrivals {
                 peak_force: force,
                 impulse: 0.5 * force * dt,
             };
-            lasting.push(Lasting {
+            lasting.push(OngoingImpact {
                 impact,
                 force,
                 opened: now.closing <= 0.0,
@@ -176,8 +176,7 @@ impl Contacts {
         LYING * self.radius
     }
 
-    /// How a roller stands to the body: both flanks of a gap count as one contact, whose forces add up; the nearer one tells when it
-    /// begins.
+    /// Contact of a roller with the body: both flanks of a gap count as one, whose forces add up; the nearer one tells when it begins.
     pub(crate) fn both_sides(&self, memory: &ContactMemory, slot: usize) -> ContactState {
         let state = |side: usize| memory.at(side * self.slots + slot);
         (1..self.sides())

@@ -27,7 +27,7 @@ pub(crate) struct Bristles {
     /// σ₁ and σ₂ \[s/m\].
     damping: f64,
     viscosity: f64,
-    /// Whether there are such.
+    /// Whether the law has viscous friction, σ₂ > 0.
     flows: bool,
 }
 

@@ -56,7 +56,7 @@ const LEAST_PRESSING: f64 = 1e-30;
 const LEAST_SHARE: f64 = 1e-9;
 
 /// The law behind a film.
-pub(super) trait Behind {
+pub(super) trait ElasticBacking {
     /// Forces and stiffness \[N/m\] at some depths \[m\] in contacts of which the flank has this share.
     fn elastic<S: Simd>(
         &self,
@@ -90,9 +90,9 @@ pub(crate) struct LaneFilm {
     shapes: Shapes,
 }
 
-/// Place of surfaces for the law behind their film.
+/// Gap that the elastic law sees through the film.
 #[derive(Clone, Copy)]
-pub(crate) struct Seen<S: Simd> {
+pub(crate) struct FilmGap<S: Simd> {
     /// Gap that the law sees \[m\], negative where it presses.
     pub(crate) gap: Lane<S>,
     /// Speed at which the film drains \[m/s\].
@@ -143,7 +143,7 @@ impl LaneFilm {
         self.film.thickness
     }
 
-    /// How films \[m\] drain under forces \[N\] in contacts of which the flank has this share.
+    /// Drain speeds of films \[m\] under forces \[N\], in contacts whose flank has this share.
     #[inline(always)]
     fn drain<S: Simd>(
         &self,
@@ -211,13 +211,13 @@ impl LaneFilm {
         gap: Lane<S>,
         dt: f64,
         share: Option<Lane<S>>,
-        behind: &impl Behind,
-    ) -> Seen<S> {
+        behind: &impl ElasticBacking,
+    ) -> FilmGap<S> {
         let (zero, one) = (w.splat(0.0), w.splat(1.0));
         let thickness = w.splat(self.film.thickness);
         let roughness = w.splat(self.film.roughness);
         let room = (-gap).max(zero).min(thickness);
-        // What nobody has looked at comes out of the open; at the start surfaces lie on what is left between them.
+        // A contact not tracked before starts open; at the start of a run the film is already squeezed to the room that the surfaces leave.
         let [gap_before, squeezed, draining] = memory.squeezed(lane);
         let known = w.splat(FAR).greater(gap_before);
         let begins = if dt > 0.0 { zero } else { room };
@@ -277,7 +277,7 @@ impl LaneFilm {
         let rate = filmed.select(rate, zero);
         memory.keep_squeezed(lane, e, rate);
         let seen = gap + e;
-        Seen {
+        FilmGap {
             gap: pressed.select(seen, seen.max(zero)),
             draining: rate,
             elastic,

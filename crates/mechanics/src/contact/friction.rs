@@ -4,9 +4,9 @@ use chaindrive_contact::{Friction, Rub};
 use pulp::Simd;
 
 use super::bristles::Bristles;
-use super::holding::{Holding as _, LaneSpring};
 use super::journal::LaneJournal;
 use super::rubbing::Rubbing;
+use super::stick_slip::{Holding as _, LaneSpring};
 use crate::lanes::{LANES, Lane, Wide};
 
 /// A friction law on lanes.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Begun;
+use super::Onsets;
 
 /// Contacts of two parts since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -18,8 +18,8 @@ pub struct Impacts {
 }
 
 impl Impacts {
-    /// Takes in what an accepted state shows.
-    pub(crate) fn note(&mut self, begun: &Begun, depth: f64) {
+    /// Adds the contacts of an accepted state.
+    pub(crate) fn note(&mut self, begun: &Onsets, depth: f64) {
         self.deepest = self.deepest.max(depth);
         if begun.count > 0.0 {
             #[expect(

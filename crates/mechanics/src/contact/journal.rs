@@ -8,8 +8,8 @@
 use chaindrive_contact::friction::Stribeck;
 use pulp::Simd;
 
-use super::holding::{Holding, LaneSpring};
 use super::rubbing::Rubbing;
+use super::stick_slip::{Holding, LaneSpring};
 use crate::lanes::{Lane, Wide};
 
 /// The law with its constants worked out.

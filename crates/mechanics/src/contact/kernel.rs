@@ -3,10 +3,10 @@
 use chaindrive_integrate::kernel;
 use pulp::Simd;
 
-use super::ahead::Ahead;
-use super::look::{FacedSurface, Place, View};
+use super::faced_surface::{FacedSurface, GapPlaces, View};
 use super::memory::FAR;
-use super::rest::{CLOSE, Clear};
+use super::predicted::PredictedLane;
+use super::resting_lanes::{CLOSE, Clear};
 use super::slots::Slots;
 use super::wrench::{Sums, Wrench};
 use super::{AWAKE, Contacts, Frame, Rollers, Shape, SurfaceLaw, Touch};
@@ -17,7 +17,7 @@ impl Contacts {
     /// Adds the contact accelerations to `rollers`, and writes down what the body receives.
     ///
     /// Reads the memory of the last accepted state, writes the state here into `touch`. Where velocities are predicted, damping is
-    /// taken at the end of the step if it is known by how much the body yields, 1/M \[1/kg\]: see [`Ahead`].
+    /// taken at the end of the step if it is known by how much the body yields, 1/M \[1/kg\]: see [`PredictedLane`].
     #[inline(always)]
     #[expect(
         clippy::too_many_arguments,
@@ -93,9 +93,9 @@ impl Contacts {
                 if let Some(uneven) = &slots.uneven {
                     turns = uneven.turns(slot.axis);
                 }
-                Place::in_gap(w, teeth, frame, slots.axis(slot.axis), [dx, dy], turns)
+                GapPlaces::in_gap(w, teeth, frame, slots.axis(slot.axis), [dx, dy], turns)
             }
-            Shape::Rail { reference, .. } => Place::at_rail(w, *reference, frame, [dx, dy]),
+            Shape::Rail { reference, .. } => GapPlaces::at_rail(w, *reference, frame, [dx, dy]),
         };
         // What the circles face there, with the errors of single gaps.
         let mut faced = view.faced(w, &place, self.touching, self.law.flank.is_some());
@@ -162,7 +162,7 @@ impl Contacts {
         let ahead = match slot.yielding {
             Some(yielding) => {
                 let (ax, ay) = (w.load(rollers.ax, roller), w.load(rollers.ay, roller));
-                Some(Ahead {
+                Some(PredictedLane {
                     thrust: -(faced.nx * ax).plus(faced.ny, ay),
                     half_step: w.splat(rollers.half_step),
                     mobility: inverse_mass + w.splat(yielding),
@@ -311,7 +311,7 @@ impl Contacts {
     }
 }
 
-/// Where a lane of slots stands.
+/// Position of a lane of slots in the arrays.
 #[derive(Clone, Copy)]
 struct RollerSlot<S: Simd> {
     /// Among all lanes, and among those of one side.
@@ -324,7 +324,7 @@ struct RollerSlot<S: Simd> {
 }
 
 impl<S: Simd> RollerSlot<S> {
-    /// What open contacts with these gaps want to know before they rest.
+    /// Readings of open contacts from which follows how long they may rest.
     #[inline(always)]
     fn clear(
         self,

@@ -1,4 +1,4 @@
-//! The laws of two surfaces on lanes: what any contact answers to where its surfaces are and how they move.
+//! Contact laws of two surfaces on lanes: force from gap, closing speed and slip.
 //!
 //! ```text
 //! gap ─► film ─► onset ─► normal force ─► friction ─► tally
@@ -10,17 +10,17 @@
 //! asked for one lane after the other, in the same place.
 
 use chaindrive_contact::dissipation::{Action, RATIO_LIMIT};
-use chaindrive_contact::{Approach, Law, Prepared};
+use chaindrive_contact::{Approach, Law, PreparedLaw};
 use pulp::Simd;
 
 use super::LEAST_DEPTH;
-use super::ahead::Ahead;
-use super::film::{Behind, LaneFilm, LaneResponse, Seen};
+use super::film::{ElasticBacking, FilmGap, LaneFilm, LaneResponse};
 use super::friction::LaneFriction;
 use super::logarithm::Logarithm;
 use super::memory::MemoryLanes;
+use super::power_on_spring::PowerOnSpring;
+use super::predicted::PredictedLane;
 use super::rubbing::Rubbing;
-use super::stacked::Stacked;
 use super::wrench::LaneTally;
 use crate::lanes::{FixedPower, LANES, Lane, Mask, Wide, rarely};
 use crate::surface::{Flank, Surface};
@@ -52,11 +52,11 @@ pub(super) enum LaneElastic {
     /// g = K δ δⁿ⁻¹: K, n, and the power.
     Power(f64, f64, Box<FixedPower>),
     /// A power with a spring behind it.
-    Stacked(Box<Stacked>),
+    Stacked(Box<PowerOnSpring>),
     /// A logarithm, which may have a spring behind it.
     Logarithm(Box<Logarithm>),
     /// Any law, one lane after the other.
-    General(Box<Prepared>),
+    General(Box<PreparedLaw>),
 }
 
 /// A flank on lanes.
@@ -68,7 +68,7 @@ pub(super) struct LaneFlank {
 }
 
 /// A lane of contacts of which some are closed.
-pub(crate) struct Pressed<S: Simd> {
+pub(crate) struct PressedLane<S: Simd> {
     pub(crate) closed: Mask<S>,
     pub(crate) depth: Lane<S>,
     closing: Lane<S>,
@@ -109,8 +109,8 @@ impl SurfaceLaw {
         self.film.as_ref().map_or(0.0, |film| film.thickness())
     }
 
-    /// Whether one of the laws takes so many operations, or calls, that it would burden the kernels of those that do not: a kernel is
-    /// compiled with long laws and without, and asked accordingly.
+    /// Whether one of the laws takes so many operations or calls that it would slow down kernels without it: kernels are compiled with long
+    /// laws and without.
     #[inline]
     pub(crate) fn is_long(&self) -> bool {
         let flank = self.flank.as_ref();
@@ -120,7 +120,8 @@ impl SurfaceLaw {
             || self.friction.is_long()
     }
 
-    /// Where a lane of contacts is for the law: through the film of oil, if there is one, that drains until `dt` after the accepted state.
+    /// Gap that the law sees in a lane of contacts: through the film of oil, if there is one, which drains until `dt` after the accepted
+    /// state.
     ///
     /// The gap is that between the surfaces, less the thickness of the film at touch. The memory of the film is kept.
     #[inline(always)]
@@ -132,10 +133,10 @@ impl SurfaceLaw {
         gap: Lane<S>,
         dt: f64,
         share: Option<Lane<S>>,
-    ) -> Seen<S> {
+    ) -> FilmGap<S> {
         match &self.film {
             Some(film) if LONG => film.squeeze(w, memory, lane, gap, dt, share, self),
-            _ => Seen {
+            _ => FilmGap {
                 gap,
                 draining: w.splat(0.0),
                 elastic: None,
@@ -157,13 +158,13 @@ impl SurfaceLaw {
         w: Wide<S>,
         memory: &mut MemoryLanes<'_, S>,
         lane: usize,
-        seen: Seen<S>,
+        seen: FilmGap<S>,
         closing: Lane<S>,
         share: Option<Lane<S>>,
         weight: Option<Lane<S>>,
-        ahead: Option<Ahead<S>>,
+        ahead: Option<PredictedLane<S>>,
         tally: &mut LaneTally<S>,
-    ) -> Option<Pressed<S>> {
+    ) -> Option<PressedLane<S>> {
         let zero = w.splat(0.0);
         let gap = seen.gap;
         memory.look(lane, gap, closing);
@@ -228,7 +229,7 @@ impl SurfaceLaw {
         }
         // The deepest contact decides about steps.
         tally.depth = tally.depth.max(depth);
-        Some(Pressed {
+        Some(PressedLane {
             closed,
             depth,
             closing,
@@ -252,7 +253,7 @@ impl SurfaceLaw {
         memory: &mut MemoryLanes<'_, S>,
         lane: usize,
         dt: f64,
-        pressed: &Pressed<S>,
+        pressed: &PressedLane<S>,
         slip: Lane<S>,
         tally: &mut LaneTally<S>,
     ) -> Rubbing<S> {
@@ -274,7 +275,7 @@ impl SurfaceLaw {
 
     /// −∂F/∂ġ without the limits \[N s/m\], for the choice of explicit steps.
     #[inline(always)]
-    pub(super) fn steepest<S: Simd>(w: Wide<S>, pressed: &Pressed<S>) -> Lane<S> {
+    pub(super) fn steepest<S: Simd>(w: Wide<S>, pressed: &PressedLane<S>) -> Lane<S> {
         pressed.closed.select(pressed.steepest, w.splat(0.0))
     }
 
@@ -283,7 +284,7 @@ impl SurfaceLaw {
     pub(crate) fn slopes<S: Simd, const LONG: bool>(
         &self,
         w: Wide<S>,
-        pressed: &Pressed<S>,
+        pressed: &PressedLane<S>,
         share: Option<Lane<S>>,
     ) -> [Lane<S>; 2] {
         let zero = w.splat(0.0);
@@ -358,7 +359,7 @@ impl SurfaceLaw {
     }
 }
 
-impl Behind for SurfaceLaw {
+impl ElasticBacking for SurfaceLaw {
     #[inline(always)]
     fn elastic<S: Simd>(
         &self,
@@ -381,7 +382,7 @@ impl LaneElastic {
             Some([stiffness, n]) => Self::Power(stiffness, n, Box::new(FixedPower::new(n - 1.0))),
             None => {
                 if let Some([stiffness, n, series]) = prepared.power_and_series() {
-                    return Self::Stacked(Box::new(Stacked::new(stiffness, n, series)));
+                    return Self::Stacked(Box::new(PowerOnSpring::new(stiffness, n, series)));
                 }
                 match Logarithm::of(law) {
                     Some(law) => Self::Logarithm(Box::new(law)),
@@ -434,7 +435,7 @@ impl LaneElastic {
     }
 }
 
-/// What is asked of a general law.
+/// The part of a general law that is asked for.
 #[derive(Clone, Copy)]
 enum Part {
     Force,
@@ -442,7 +443,7 @@ enum Part {
 }
 
 #[inline(always)]
-fn general<S: Simd>(w: Wide<S>, law: &Prepared, depth: Lane<S>, part: Part) -> Lane<S> {
+fn general<S: Simd>(w: Wide<S>, law: &PreparedLaw, depth: Lane<S>, part: Part) -> Lane<S> {
     let mut numbers = [0.0; LANES];
     depth.store(&mut numbers, 0);
     respond_one_by_one(law, part, &mut numbers[..Wide::<S>::COUNT]);
@@ -451,7 +452,7 @@ fn general<S: Simd>(w: Wide<S>, law: &Prepared, depth: Lane<S>, part: Part) -> L
 
 /// Kept out of line: a general law is too long to be copied into every kernel.
 #[inline(never)]
-fn respond_one_by_one(law: &Prepared, part: Part, numbers: &mut [f64]) {
+fn respond_one_by_one(law: &PreparedLaw, part: Part, numbers: &mut [f64]) {
     for number in numbers {
         let response = law.respond(Approach {
             penetration: *number,

@@ -10,7 +10,7 @@
 //! # Source
 //! The series in √(2t): R. M. Corless and others, *Adv. Comput. Math.* **5**, 1996, 329–359, section 4.
 
-use chaindrive_contact::{Approach, Law, Prepared};
+use chaindrive_contact::{Approach, Law, PreparedLaw};
 use pulp::Simd;
 
 use super::LEAST_DEPTH;
@@ -35,7 +35,7 @@ pub(super) struct Logarithm {
 impl Logarithm {
     /// The law, if it is one.
     pub(super) fn of(law: &Law) -> Option<Self> {
-        let law: Prepared = law.prepared();
+        let law: PreparedLaw = law.prepared();
         let [scale, end] = law.logarithm()?;
         let knee = law.reach()?;
         let at = |penetration: f64| {

@@ -16,7 +16,7 @@ pub(crate) const FAR: f64 = 1.0;
 
 /// Quantities remembered of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kept {
+pub(crate) enum MemoryField {
     /// Inverse of the closing speed at touch \[s/m\]; zero while open.
     InverseOnset,
     /// Gap \[m\], negative in contact; where there is oil, what the law behind the film sees.
@@ -36,13 +36,13 @@ pub(crate) enum Kept {
     Draining,
 }
 
-impl Kept {
+impl MemoryField {
     const COUNT: usize = Self::Draining as usize + 1;
 }
 
 /// State of contacts at one instant, whole lanes.
 ///
-/// Contacts stand in blocks of eight, and a block has eight numbers of everything that is [`Kept`]: a kernel looks at one array, once,
+/// Contacts stand in blocks of eight, and a block has eight numbers of everything that is [`MemoryField`]: a kernel looks at one array, once,
 /// and what it wants of a lane is in one place.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ContactMemory {
@@ -50,15 +50,15 @@ pub(crate) struct ContactMemory {
 }
 
 /// Numbers of a block.
-const BLOCK: usize = Kept::COUNT * LANES;
+const BLOCK: usize = MemoryField::COUNT * LANES;
 
 /// Numbers of the blocks that hold as many contacts.
 const fn blocks(count: usize) -> usize {
-    padded(count) * Kept::COUNT
+    padded(count) * MemoryField::COUNT
 }
 
-/// Where a number of a contact stands.
-const fn place(what: Kept, contact: usize) -> usize {
+/// Index of a number of a contact.
+const fn place(what: MemoryField, contact: usize) -> usize {
     contact / LANES * BLOCK + what as usize * LANES + contact % LANES
 }
 
@@ -98,7 +98,7 @@ impl ContactMemory {
         self.numbers.clear();
         self.numbers.resize(blocks(count), 0.0);
         for contact in 0..self.len() {
-            self.set(Kept::Gap, contact, FAR);
+            self.set(MemoryField::Gap, contact, FAR);
         }
     }
 
@@ -111,27 +111,27 @@ impl ContactMemory {
 
     /// Number of contacts, whole blocks.
     pub(crate) fn len(&self) -> usize {
-        self.numbers.len() / Kept::COUNT
+        self.numbers.len() / MemoryField::COUNT
     }
 
     #[inline]
-    pub(crate) fn get(&self, what: Kept, contact: usize) -> f64 {
+    pub(crate) fn get(&self, what: MemoryField, contact: usize) -> f64 {
         self.numbers[place(what, contact)]
     }
 
     #[inline]
-    pub(crate) fn set(&mut self, what: Kept, contact: usize, value: f64) {
+    pub(crate) fn set(&mut self, what: MemoryField, contact: usize, value: f64) {
         self.numbers[place(what, contact)] = value;
     }
 
     /// One kind of number, of one contact after the other.
-    pub(crate) fn each(&self, what: Kept) -> impl Iterator<Item = f64> {
+    pub(crate) fn each(&self, what: MemoryField) -> impl Iterator<Item = f64> {
         (0..self.len()).map(move |contact| self.get(what, contact))
     }
 
     /// Takes over one contact of another memory.
     pub(crate) fn carry(&mut self, to: usize, other: &Self, from: usize) {
-        let [to, from] = [to, from].map(|contact| place(Kept::InverseOnset, contact));
+        let [to, from] = [to, from].map(|contact| place(MemoryField::InverseOnset, contact));
         for row in (0..BLOCK).step_by(LANES) {
             self.numbers[to + row] = other.numbers[from + row];
         }
@@ -140,13 +140,13 @@ impl ContactMemory {
     /// Whether a contact is closed.
     #[inline]
     pub(crate) fn is_closed(&self, contact: usize) -> bool {
-        self.get(Kept::InverseOnset, contact) > 0.0
+        self.get(MemoryField::InverseOnset, contact) > 0.0
     }
 
     /// Speed at touch \[m/s\] and force \[N\] of a closed contact.
     pub(crate) fn closed(&self, contact: usize) -> Option<(f64, f64)> {
-        let inverse = self.get(Kept::InverseOnset, contact);
-        (inverse > 0.0).then(|| (1.0 / inverse, self.get(Kept::Force, contact)))
+        let inverse = self.get(MemoryField::InverseOnset, contact);
+        (inverse > 0.0).then(|| (1.0 / inverse, self.get(MemoryField::Force, contact)))
     }
 
     /// Refuses a memory of another number of contacts.
@@ -157,8 +157,8 @@ impl ContactMemory {
     /// A contact as it is.
     pub(crate) fn at(&self, contact: usize) -> ContactState {
         ContactState {
-            gap: self.get(Kept::Gap, contact),
-            closing: self.get(Kept::Closing, contact),
+            gap: self.get(MemoryField::Gap, contact),
+            closing: self.get(MemoryField::Closing, contact),
             force: self.closed(contact).map(|(_, force)| force),
         }
     }
@@ -185,7 +185,7 @@ pub(crate) struct MemoryLanes<'a, S: Simd> {
     now: LanesMut<'a, S>,
 }
 
-/// How a contact began between the last accepted state and now.
+/// Onset of a contact between the last accepted state and now.
 pub(crate) struct Onset<S: Simd> {
     /// Closing speed at touch \[m/s\].
     pub(crate) speed: Lane<S>,
@@ -211,40 +211,40 @@ impl<'a, S: Simd> MemoryLanes<'a, S> {
 
     /// Which lane of all numbers holds one kind of some contacts.
     #[inline(always)]
-    fn place(what: Kept, lane: usize) -> usize {
+    fn place(what: MemoryField, lane: usize) -> usize {
         // Lanes of a processor that a row of eight fills.
         let row = LANES / Wide::<S>::COUNT;
-        lane / row * (Kept::COUNT * row) + what as usize * row + lane % row
+        lane / row * (MemoryField::COUNT * row) + what as usize * row + lane % row
     }
 
     #[inline(always)]
-    fn before(&self, what: Kept, lane: usize) -> Lane<S> {
+    fn before(&self, what: MemoryField, lane: usize) -> Lane<S> {
         self.before.get(Self::place(what, lane))
     }
 
     #[inline(always)]
-    fn keep(&mut self, what: Kept, lane: usize, value: Lane<S>) {
+    fn keep(&mut self, what: MemoryField, lane: usize, value: Lane<S>) {
         self.now.set(Self::place(what, lane), value);
     }
 
     /// Writes down where the surfaces of a lane are.
     #[inline(always)]
     pub(crate) fn look(&mut self, lane: usize, gap: Lane<S>, closing: Lane<S>) {
-        self.keep(Kept::Gap, lane, gap);
-        self.keep(Kept::Closing, lane, closing);
+        self.keep(MemoryField::Gap, lane, gap);
+        self.keep(MemoryField::Closing, lane, closing);
     }
 
     /// Opens a lane.
     #[inline(always)]
     pub(crate) fn open(&mut self, w: Wide<S>, lane: usize) {
-        self.keep(Kept::InverseOnset, lane, w.splat(0.0));
-        self.keep(Kept::Force, lane, w.splat(0.0));
+        self.keep(MemoryField::InverseOnset, lane, w.splat(0.0));
+        self.keep(MemoryField::Force, lane, w.splat(0.0));
     }
 
     /// Inverse of the speed at touch of contacts that were closed before, zero for the others.
     #[inline(always)]
     pub(crate) fn inverse_onset(&self, lane: usize) -> Lane<S> {
-        self.before(Kept::InverseOnset, lane)
+        self.before(MemoryField::InverseOnset, lane)
     }
 
     /// Speed at touch, interpolated to zero gap as
@@ -258,8 +258,8 @@ impl<'a, S: Simd> MemoryLanes<'a, S> {
         closing: Lane<S>,
     ) -> Onset<S> {
         // v = v_a + s (v_b − v_a),   s = g_a/(g_a − g_b)
-        let gap_before = self.before(Kept::Gap, lane).max(w.splat(0.0));
-        let closing_before = self.before(Kept::Closing, lane);
+        let gap_before = self.before(MemoryField::Gap, lane).max(w.splat(0.0));
+        let closing_before = self.before(MemoryField::Closing, lane);
         let share = gap_before * (gap_before + depth).recip();
         Onset {
             speed: closing_before + share * (closing - closing_before),
@@ -270,59 +270,64 @@ impl<'a, S: Simd> MemoryLanes<'a, S> {
     /// Keeps the inverse speeds at touch, zero where open.
     #[inline(always)]
     pub(crate) fn keep_onset(&mut self, lane: usize, inverse: Lane<S>) {
-        self.keep(Kept::InverseOnset, lane, inverse);
+        self.keep(MemoryField::InverseOnset, lane, inverse);
     }
 
     /// Forces \[N\], and what else drew the circles towards their surfaces \[m/s²\], at the last accepted state.
     #[inline(always)]
     pub(super) fn pushed(&self, lane: usize) -> [Lane<S>; 2] {
         [
-            self.before(Kept::Force, lane),
-            self.before(Kept::Thrust, lane),
+            self.before(MemoryField::Force, lane),
+            self.before(MemoryField::Thrust, lane),
         ]
     }
 
     /// Keeps what else draws the circles.
     #[inline(always)]
     pub(super) fn keep_thrust(&mut self, lane: usize, thrust: Lane<S>) {
-        self.keep(Kept::Thrust, lane, thrust);
+        self.keep(MemoryField::Thrust, lane, thrust);
     }
 
     /// Keeps the forces, zero where open.
     #[inline(always)]
     pub(crate) fn keep_force(&mut self, lane: usize, force: Lane<S>) {
-        self.keep(Kept::Force, lane, force);
+        self.keep(MemoryField::Force, lane, force);
     }
 
     #[inline(always)]
     pub(crate) fn keep_share(&mut self, lane: usize, share: Lane<S>) {
-        self.keep(Kept::Share, lane, share);
+        self.keep(MemoryField::Share, lane, share);
     }
 
     /// Gap \[m\] at the last accepted state, what had been squeezed out of the film \[m\], and how fast it drained \[m/s\].
     #[inline(always)]
     pub(super) fn squeezed(&self, lane: usize) -> [Lane<S>; 3] {
-        [Kept::Gap, Kept::Squeezed, Kept::Draining].map(|what| self.before(what, lane))
+        [
+            MemoryField::Gap,
+            MemoryField::Squeezed,
+            MemoryField::Draining,
+        ]
+        .map(|what| self.before(what, lane))
     }
 
     /// Keeps the state of the film.
     #[inline(always)]
     pub(super) fn keep_squeezed(&mut self, lane: usize, squeezed: Lane<S>, draining: Lane<S>) {
-        self.keep(Kept::Squeezed, lane, squeezed);
-        self.keep(Kept::Draining, lane, draining);
+        self.keep(MemoryField::Squeezed, lane, squeezed);
+        self.keep(MemoryField::Draining, lane, draining);
     }
 
     /// State of the friction of contacts that were closed before; the others begin without.
     #[inline(always)]
     pub(crate) fn stick(&self, w: Wide<S>, lane: usize) -> Lane<S> {
         let zero = w.splat(0.0);
-        let was_closed = self.before(Kept::InverseOnset, lane).greater(zero);
-        was_closed.select(self.before(Kept::Stick, lane), zero)
+        let was_closed = self.before(MemoryField::InverseOnset, lane).greater(zero);
+        was_closed.select(self.before(MemoryField::Stick, lane), zero)
     }
 
     /// Keeps the state of the friction where closed.
     #[inline(always)]
     pub(crate) fn keep_stick(&mut self, w: Wide<S>, lane: usize, closed: Mask<S>, stick: Lane<S>) {
-        self.keep(Kept::Stick, lane, closed.select(stick, w.splat(0.0)));
+        self.keep(MemoryField::Stick, lane, closed.select(stick, w.splat(0.0)));
     }
 }

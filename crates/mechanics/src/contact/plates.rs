@@ -11,9 +11,9 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::kernel;
 use pulp::Simd;
 
-use super::ahead::Ahead;
 use super::memory::FAR;
-use super::rest::Clear;
+use super::predicted::PredictedLane;
+use super::resting_lanes::Clear;
 use super::window::Places;
 use super::wrench::Sums;
 use super::{AWAKE, Frame, MemoryLanes, SurfaceLaw, Touch, Wrench};
@@ -24,9 +24,9 @@ use crate::surface::Surface;
 /// A vector for each of the two pins of the links of a lane.
 pub(crate) type OfPins<S> = [[Lane<S>; 2]; 2];
 
-/// What moves the pins of the links of a lane, where they are point masses.
+/// Accelerations of the pins of a lane of links, where pins are point masses.
 #[derive(Clone, Copy)]
-pub(crate) struct Drawn<S: Simd> {
+pub(crate) struct PinAccelerations<S: Simd> {
     /// Accelerations \[m/s²\] by all that was found so far.
     pub(crate) by: OfPins<S>,
     /// Inverse masses \[1/kg\].
@@ -35,15 +35,15 @@ pub(crate) struct Drawn<S: Simd> {
     pub(crate) half_step: f64,
 }
 
-/// Where the pins of lanes of consecutive links are, how they move, and what they bear.
+/// Pins of lanes of consecutive links: positions, velocities, and forces on them.
 pub(crate) trait PlatePins {
     /// Places \[m\] of the pins of the lane that begins with a link.
     fn places<S: Simd>(&self, w: Wide<S>, link: usize) -> OfPins<S>;
     /// Velocities \[m/s\].
     fn velocities<S: Simd>(&self, w: Wide<S>, link: usize) -> OfPins<S>;
-    /// How pins are drawn that are point masses; none of others, whose lanes may not rest.
-    fn drawn<S: Simd>(&self, w: Wide<S>, link: usize) -> Option<Drawn<S>>;
-    /// Takes forces \[N\] on the pins; those on links behind the last one are nothing.
+    /// Accelerations of pins that are point masses; none for others, whose lanes may not rest.
+    fn drawn<S: Simd>(&self, w: Wide<S>, link: usize) -> Option<PinAccelerations<S>>;
+    /// Takes forces \[N\] on the pins; those on links after the last one are nothing.
     fn push<S: Simd>(&mut self, w: Wide<S>, link: usize, forces: OfPins<S>);
 }
 
@@ -67,7 +67,7 @@ kernel!(
 #[derive(Clone, Debug)]
 pub(crate) struct PlateContact {
     pub(crate) face: RailFace,
-    /// Where the frame's origin lies in the face's own coordinates.
+    /// Origin of the frame in the coordinates of the face.
     pub(crate) reference: Point,
     /// Box around the face (low, high).
     pub(crate) bounds: [Point; 2],
@@ -86,12 +86,12 @@ pub(crate) struct PlateContact {
     pub(crate) accepted: f64,
 }
 
-/// Where on its edge a plate touches.
+/// Point of a plate's edge that touches.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlatePoint {
     /// Share of the way from the first pin to the second.
     pub(crate) share: f64,
-    /// What the edge faces there.
+    /// Surface that the edge faces there.
     pub(crate) probe: Probe,
     /// Share of the contact that this plate carries: a half at an eye.
     pub(crate) weight: f64,
@@ -99,7 +99,7 @@ pub(crate) struct PlatePoint {
 
 /// The same for a lane of plates.
 #[derive(Clone, Copy)]
-struct Touched<S: Simd> {
+struct LanePlatePoint<S: Simd> {
     share: Lane<S>,
     gap: Lane<S>,
     /// Outward normal in the face's coordinates.
@@ -146,7 +146,7 @@ impl PlateContact {
         }
     }
 
-    /// Where a plate between pins `a` and `b`, in the face's coordinates, comes nearest.
+    /// Nearest point of a plate between pins `a` and `b`, in the coordinates of the face.
     pub(crate) fn nearest(&self, a: Point, b: Point) -> PlatePoint {
         let edge = b - a;
         let length_squared = edge.norm_squared().max(f64::MIN_POSITIVE);
@@ -323,7 +323,7 @@ impl PlateContact {
                 let [[ax, ay], [bx, by]] = drawn.by;
                 let mobility = first + share * (second - first) + w.splat(yielding);
                 let (ax, ay) = (ax + share * (bx - ax), ay + share * (by - ay));
-                Some(Ahead {
+                Some(PredictedLane {
                     thrust: -(nx * ax + ny * ay),
                     half_step: w.splat(drawn.half_step),
                     // 1/weight, of one and a half
@@ -370,7 +370,7 @@ impl PlateContact {
         None
     }
 
-    /// How long \[s\] a lane may rest whose plates are clear by these distances \[m\] at least.
+    /// Time \[s\] for which a lane may rest whose plates are clear by at least these distances \[m\].
     #[inline(always)]
     #[expect(
         clippy::too_many_arguments,
@@ -386,7 +386,7 @@ impl PlateContact {
         speeds: OfPins<S>,
         pins: &P,
     ) -> f64 {
-        let Some(Drawn { by: thrusts, .. }) = pins.drawn(w, link) else {
+        let Some(PinAccelerations { by: thrusts, .. }) = pins.drawn(w, link) else {
             return 0.0;
         };
         let valid = w.first(self.links - link);
@@ -425,7 +425,7 @@ impl PlateContact {
         x.max(y)
     }
 
-    /// Where plates come nearest, as [`nearest`](Self::nearest) has it: edges begin at `a`, and go `along` as far as the root of `square`.
+    /// Nearest points of plates, as in [`nearest`](Self::nearest): edges begin at `a`, and go `along` as far as the root of `square`.
     #[inline(always)]
     fn nearest_of<S: Simd>(
         &self,
@@ -433,7 +433,7 @@ impl PlateContact {
         a: [Lane<S>; 2],
         along: [Lane<S>; 2],
         square: Lane<S>,
-    ) -> Touched<S> {
+    ) -> LanePlatePoint<S> {
         let [zero, one] = [0.0, 1.0].map(|number| w.splat(number));
         // Both ends first, then every bulging arc that the line passes: the nearest foot counts.
         let inverse_square = square.max(w.splat(f64::MIN_POSITIVE)).recip();
@@ -460,7 +460,7 @@ impl PlateContact {
         best
     }
 
-    /// What edges face at some shares of their length.
+    /// Surfaces that edges face at some shares of their length.
     #[inline(always)]
     fn touched<S: Simd>(
         &self,
@@ -468,10 +468,10 @@ impl PlateContact {
         a: [Lane<S>; 2],
         along: [Lane<S>; 2],
         share: Lane<S>,
-    ) -> Touched<S> {
+    ) -> LanePlatePoint<S> {
         let at = [a[0] + share * along[0], a[1] + share * along[1]];
         let nearest = self.face.nearest(w, at, self.half_height);
-        Touched {
+        LanePlatePoint {
             share,
             gap: nearest.gap,
             nx: nearest.nx,
@@ -499,8 +499,8 @@ impl PlateContact {
     }
 }
 
-impl<S: Simd> Touched<S> {
-    /// Whatever is nearer; the other where both are as near.
+impl<S: Simd> LanePlatePoint<S> {
+    /// The nearer of two; the other where both are as near.
     #[inline(always)]
     fn or(self, other: Self) -> Self {
         let nearer = other.gap.greater(self.gap);

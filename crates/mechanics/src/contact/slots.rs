@@ -4,24 +4,24 @@ use pulp::Simd;
 
 use super::memory::FAR;
 use super::memory::MemoryLanes;
-use super::uneven::UnevenLanes;
+use super::slot_differences::SlotDifferenceLanes;
 use super::{Contacts, Touch};
 use crate::lanes::{Lane, Lanes, LanesMut, Wide};
 
-/// All that the kernel reads and writes of slots. Lanes of the second side stand behind those of the first.
+/// All that the kernel reads and writes of slots. Lanes of the second side stand after those of the first.
 pub(super) struct Slots<'a, S: Simd> {
     pub(super) memory: MemoryLanes<'a, S>,
     /// Where rigid links roll.
     pub(super) faces: Option<FacesNow<'a, S>>,
     axis: [Lanes<'a, S>; 2],
-    /// What differs from slot to slot, if anything does.
-    pub(super) uneven: Option<UnevenLanes<'a, S>>,
+    /// Differences between slots, if there are any.
+    pub(super) uneven: Option<SlotDifferenceLanes<'a, S>>,
     wake: &'a [f64],
     until: &'a mut [f64],
     lanes: usize,
 }
 
-/// What implicit steps want to know.
+/// Stiffness, damping and faces that implicit steps read.
 pub(super) struct FacesNow<'a, S: Simd> {
     pub(super) normal_x: LanesMut<'a, S>,
     pub(super) normal_y: LanesMut<'a, S>,

@@ -35,7 +35,7 @@ impl Dice {
     }
 }
 
-/// Draws pieces one behind the other.
+/// Draws pieces one after the other.
 struct Pen {
     at: Point,
     heading: f64,
@@ -244,7 +244,7 @@ impl Roller {
     }
 
     fn closed(&self) -> usize {
-        let onsets = self.contacts.memory.state.each(Kept::InverseOnset);
+        let onsets = self.contacts.memory.state.each(MemoryField::InverseOnset);
         onsets.filter(|onset| *onset > 0.0).count()
     }
 
@@ -435,7 +435,7 @@ fn a_contact_is_carried_over_the_tip() {
         let state = &mut roller.contacts.memory.state;
         for contact in 0..state.len() {
             if state.is_closed(contact) {
-                state.set(Kept::InverseOnset, contact, 42.0);
+                state.set(MemoryField::InverseOnset, contact, 42.0);
             }
         }
         for step in -99..=99_i32 {
@@ -445,7 +445,7 @@ fn a_contact_is_carried_over_the_tip() {
                 (force.norm() - 100.0).abs() < 1e-3,
                 "{way}, {step}: {force:?}"
             );
-            let onsets = roller.contacts.memory.state.each(Kept::InverseOnset);
+            let onsets = roller.contacts.memory.state.each(MemoryField::InverseOnset);
             let closed: Vec<f64> = onsets.filter(|v| *v > 0.0).collect();
             assert_eq!(closed, [42.0], "{way}, {step}");
             if step % 7 == 0 {

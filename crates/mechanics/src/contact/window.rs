@@ -1,4 +1,4 @@
-//! Which rollers can touch a body before the windows are renewed.
+//! Rollers that can touch a body before the windows are renewed.
 
 use std::mem::swap;
 
@@ -7,7 +7,7 @@ use chaindrive_integrate::Array;
 use serde::{Deserialize, Serialize};
 
 use super::memory::FAR;
-use super::{ContactState, Contacts, Frame, Kept, Shape, Teeth, Touch};
+use super::{ContactState, Contacts, Frame, MemoryField, Shape, Teeth, Touch};
 use crate::lanes::LANES;
 
 /// A run of consecutive rollers, no more than one lane of eight holds.
@@ -28,7 +28,7 @@ pub(crate) struct Spare {
     memory: Touch,
 }
 
-/// Where the rollers are.
+/// Positions of the rollers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Places<'a> {
     pub(crate) x: &'a [f64],
@@ -134,7 +134,7 @@ impl Contacts {
             let slot = self.slot_of(run.start + k);
             slot.is_some_and(|slot| {
                 let state = &self.memory.state;
-                let gap = |side| state.get(Kept::Gap, side * self.slots + slot);
+                let gap = |side| state.get(MemoryField::Gap, side * self.slots + slot);
                 let gaps = (0..self.sides()).map(gap);
                 gaps.fold(FAR, f64::min) < LIKELY * self.radius
             })
@@ -183,7 +183,7 @@ pub(super) fn for_each_slot(runs: &[Run], mut visit: impl FnMut(usize, usize)) {
     }
 }
 
-/// The side of the gap at one axis that keeps the first stretch of the gap at another: see `contact/look.rs`.
+/// The side of the gap at one axis that keeps the first stretch of the gap at another: see `contact/faced_surface.rs`.
 fn sides_over(from: [f64; 2], to: [f64; 2], sides: usize) -> usize {
     let across = to[0] * from[1] - to[1] * from[0];
     if across.abs() < 1e-9 {
@@ -301,7 +301,7 @@ mod tests {
             for last in first..whole.count {
                 contacts.memory.open(contacts.slots);
                 for slot in first..=last {
-                    contacts.memory.state.set(Kept::Gap, slot, -1e-6);
+                    contacts.memory.state.set(MemoryField::Gap, slot, -1e-6);
                 }
                 let cut: Vec<Run> = contacts.cut(whole).collect();
                 let rollers = cut.iter().flat_map(|run| run.start..run.start + run.count);

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::memory::Onset;
 use crate::lanes::{Lane, Mask, Wide};
 
-/// What the rollers do to a body, and what the step control wants to know.
+/// Loads of the rollers on a body, with the figures that the step control reads.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Wrench {
     /// Force on the body \[N\].
@@ -28,12 +28,12 @@ pub(crate) struct Wrench {
     /// Smallest share of the step after which such a contact began.
     pub(crate) first_share: f64,
     /// The contact that began in this step.
-    pub(crate) begun: Begun,
+    pub(crate) begun: Onsets,
 }
 
 /// Contacts that began in a step.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Begun {
+pub(crate) struct Onsets {
     /// Their number.
     pub(crate) count: f64,
     /// Those that closed slower than the floor of the law.
@@ -42,7 +42,7 @@ pub(crate) struct Begun {
     pub(crate) fastest: f64,
 }
 
-impl Begun {
+impl Onsets {
     /// With those of others.
     pub(crate) fn and(self, others: Self) -> Self {
         Self {
@@ -53,7 +53,7 @@ impl Begun {
     }
 }
 
-/// What contacts cost, lane by lane, and how they began.
+/// Losses of contacts, lane by lane, and their onsets.
 pub(crate) struct LaneTally<S: Simd> {
     /// Power lost along the normals \[W\].
     pub(crate) normal_loss: Lane<S>,
@@ -62,7 +62,7 @@ pub(crate) struct LaneTally<S: Simd> {
     /// Deepest penetration \[m\].
     pub(super) depth: Lane<S>,
     /// Numbers, not lanes, which would be put down and fetched in every loop for what is rare.
-    begun: Begun,
+    begun: Onsets,
     first_depth: f64,
     first_share: f64,
 }
@@ -75,7 +75,7 @@ impl<S: Simd> LaneTally<S> {
             normal_loss: zero,
             friction_loss: zero,
             depth: zero,
-            begun: Begun::default(),
+            begun: Onsets::default(),
             first_depth: 0.0,
             first_share: 1.0,
         }
@@ -97,7 +97,7 @@ impl<S: Simd> LaneTally<S> {
         let share = fresh.select(onset.share, one).smallest();
         self.first_share = self.first_share.min(share);
         let gentle = fresh & w.splat(floor).greater(onset.speed);
-        self.begun = self.begun.and(Begun {
+        self.begun = self.begun.and(Onsets {
             count: fresh.select(one, zero).sum(),
             gentle: gentle.select(one, zero).sum(),
             fastest: fresh.select(onset.speed, zero).largest(),
@@ -112,7 +112,7 @@ impl<S: Simd> LaneTally<S> {
 
     /// The contacts that began.
     #[inline(always)]
-    pub(crate) fn begun(&self) -> Begun {
+    pub(crate) fn begun(&self) -> Onsets {
         self.begun
     }
 

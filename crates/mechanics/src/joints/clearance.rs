@@ -66,7 +66,7 @@ impl FreeRoller {
     }
 }
 
-/// Whether something that turns in a bore has play in it.
+/// Play that a part turning in a bore must have, or may have.
 #[derive(Clone, Copy)]
 enum Play {
     /// It must have play.

@@ -124,7 +124,7 @@ pub(crate) enum Row {
     Border([(usize, f64); 3]),
 }
 
-/// How the partner moves along a direction at the circle's centre, with a lever for its rotation.
+/// Derivatives of the partner's motion along a direction at the circle's centre, with a lever for its rotation.
 pub(crate) fn partner_row(
     element: &Element,
     mounts: &[Mount],

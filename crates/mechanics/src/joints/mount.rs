@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::bodies::{Bodies, RailSupport, Wheel, WheelSupport};
 use crate::seam::Way;
 
-/// How a wheel or rail can move: which coordinates of the bodies shift its frame, and which one turns it, counted from the first.
+/// Coordinates that move a wheel or rail: those that shift its frame, and the one that turns it, counted from the first.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Mount {
     /// (coordinate, shift of the frame's origin per unit); unused ones have none.

@@ -4,13 +4,13 @@ use chaindrive_geometry::Vector;
 use nalgebra::Matrix2;
 
 use super::{Element, Part, Partner, turned};
-use crate::contact::{Apart, Bearing, CENTRED, LaneTally, MemoryLanes};
+use crate::contact::{BoreContact, CENTRED, LaneTally, MemoryLanes, RelativeMotion};
 use crate::lanes::Wide;
 use crate::seam::{Moving, Sum};
 
 /// The contact of `pin` in `hole` at a joint, which the memory has in `lane`: one lane of one.
 pub(crate) fn touch(
-    bearing: &Bearing,
+    bearing: &BoreContact,
     joint: usize,
     [hole, pin]: [&Part; 2],
     memory: &mut MemoryLanes<'_, pulp::Scalar>,
@@ -21,7 +21,7 @@ pub(crate) fn touch(
     let w = Wide(pulp::Scalar);
     let lanes = |v: Vector| [w.splat(v.x), w.splat(v.y)];
     let all = w.first(1);
-    let apart = Apart {
+    let apart = RelativeMotion {
         offset: lanes(pin.place - hole.place),
         rate: lanes(pin.velocity - hole.velocity),
         spin: [w.splat(hole.spin), w.splat(pin.spin)],
@@ -56,7 +56,7 @@ pub(crate) fn touch(
 /// ```text
 /// ∂U/∂e = F n,   ∂²U/∂e² = k n nᵀ + F/|e| t tᵀ,   e = P_pin − P_hole
 /// ```
-pub(crate) fn add_joint(bearing: &Bearing, [hole, pin]: [Moving; 2], sum: &mut Sum<'_>) {
+pub(crate) fn add_joint(bearing: &BoreContact, [hole, pin]: [Moving; 2], sum: &mut Sum<'_>) {
     let offset = pin.place - hole.place;
     let eccentricity = offset.norm();
     let depth = eccentricity - bearing.clearance;

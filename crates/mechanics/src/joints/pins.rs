@@ -13,7 +13,7 @@ use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
 use super::{Element, JointMates, Mate, Partner, Sides};
-use crate::contact::{Apart, Bearing, ContactMemory, LaneTally, MemoryLanes, Tally};
+use crate::contact::{BoreContact, ContactMemory, LaneTally, MemoryLanes, RelativeMotion, Tally};
 use crate::lanes::{LANES, Mask, Wide, padded};
 
 /// Forces of the joints, whole lanes.
@@ -140,7 +140,7 @@ impl Pins {
         }
     }
 
-    /// Repeats the first joint of a closed chain behind the last.
+    /// Repeats the first joint of a closed chain after the last.
     pub(crate) fn close(&mut self, joints: usize) {
         for values in self.all() {
             values[joints] = values[0];
@@ -162,7 +162,7 @@ impl Pins {
         &self,
         joint: usize,
         mates: &JointMates,
-        bearing: &Bearing,
+        bearing: &BoreContact,
         [before, after]: [&Sides; 2],
     ) -> Option<Element> {
         let [hole, pin] = mates.pair?;
@@ -205,7 +205,7 @@ kernel!(
         /// Sides before and after the joints.
         sides: [&'a Sides; 2],
         pairs: &'a Pairs,
-        bearing: &'a Bearing,
+        bearing: &'a BoreContact,
         /// Memory of the accepted state, and of this one.
         known: &'a ContactMemory,
         memory: &'a mut ContactMemory,
@@ -222,7 +222,7 @@ kernel!(
         let rubs = bearing.rubs();
         for (lane, start) in (0..joints).step_by(Wide::<S>::COUNT).enumerate() {
             // How the pin and the bush of every joint stand and move to each other.
-            let apart = Apart {
+            let apart = RelativeMotion {
                 offset: [
                     w.load(&after.x, start) - w.load(&before.x, start),
                     w.load(&after.y, start) - w.load(&before.y, start),

@@ -39,14 +39,14 @@ pub(crate) struct Joints {
     damping: Array,
     /// Largest r² \[m²\] and c \[N m s/rad\].
     largest: [f64; 2],
-    /// What holds beside the pin; none where nothing does.
-    beside: Option<Beside>,
+    /// Resistance beside that of the pin; none where there is none.
+    beside: Option<SealAndPlates>,
     pub(crate) memory: Stick,
 }
 
-/// What holds beside the pin.
+/// Seal and plates, which resist beside the pin.
 #[derive(Clone, Debug)]
-struct Beside {
+struct SealAndPlates {
     /// Force of the seal on the surface of the pin, M_seal/r \[N\].
     seal: f64,
     /// Friction of plates over the normal force, on the surface of the pin, m/r \[–\], whole lanes.
@@ -82,7 +82,7 @@ pub(crate) struct Stick {
 /// Results of one evaluation in the joints.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Resistance {
-    /// Torque of every joint on the link after it \[N m\], and whole lanes behind.
+    /// Torque of every joint on the link after it \[N m\], and whole lanes after.
     #[serde(skip)]
     pub(crate) torque: Array,
     /// Normal forces and slips, for laws that are asked for all joints at once.
@@ -122,7 +122,7 @@ impl Joints {
             radius: at_joints(radius),
             damping: at_joints(damping),
             largest: [radius * radius, damping],
-            beside: (seal > 0.0 || lateral.is_some()).then(|| Beside {
+            beside: (seal > 0.0 || lateral.is_some()).then(|| SealAndPlates {
                 seal: seal / radius,
                 plates: Array::zeros(entries),
             }),
@@ -390,7 +390,7 @@ impl Joints {
     }
 }
 
-/// How the links of a member turn against each other.
+/// Relative rotation of the links of a member.
 pub(crate) trait Turns<S: Simd> {
     /// ω \[rad/s\] and N \[N\] of a lane of joints.
     fn at(&self, w: Wide<S>, lane: usize) -> [Lane<S>; 2];

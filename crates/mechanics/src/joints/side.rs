@@ -25,7 +25,7 @@ impl Mate {
 pub(crate) struct JointMates {
     /// The hole and the pin; none where the chain simply ends.
     pub(crate) pair: Option<[Mate; 2]>,
-    /// What the roller sits on.
+    /// The part that carries the roller.
     pub(crate) carrier: Mate,
 }
 

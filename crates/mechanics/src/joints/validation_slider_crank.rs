@@ -15,7 +15,7 @@ use chaindrive_validation::Tolerance::{Absolute, Relative};
 
 use super::{Part, touch, turned};
 use crate::Surface;
-use crate::contact::{Bearing, ContactMemory, LaneTally, MemoryLanes, Tally};
+use crate::contact::{BoreContact, ContactMemory, LaneTally, MemoryLanes, Tally};
 use crate::lanes::Wide;
 
 /// One contact of pin and bush.
@@ -35,7 +35,7 @@ struct SliderCrank {
     /// Of the rod about its hinge on the crank.
     rod_inertia: f64,
     slider_mass: f64,
-    bearing: Bearing,
+    bearing: BoreContact,
     depth: f64,
     memory: (f64, ContactMemory),
     impacts: Vec<Impact>,
@@ -80,7 +80,7 @@ impl SliderCrank {
             rod_mass,
             rod_inertia: input("J_conrod") + 0.25 * rod_mass * rod * rod,
             slider_mass: input("m_slider"),
-            bearing: Bearing::new(&surface, bore, bore - clearance),
+            bearing: BoreContact::new(&surface, bore, bore - clearance),
             depth: 2e-9,
             memory: (0.0, ContactMemory::open(1)),
             impacts: Vec::new(),

@@ -1,4 +1,4 @@
-//! What has passed of many decays.
+//! Expired shares of many decays, e⁻ˣ − 1.
 //!
 //! ```text
 //! p(x) = e⁻ˣ − 1:     p(2x) = p(x) (2 + p(x)),     p(x) = −x + x²/2 − x³/6 + …

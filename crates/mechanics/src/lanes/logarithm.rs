@@ -14,7 +14,7 @@ use super::{Lane, Wide};
 const TERMS: usize = 10;
 
 impl<S: Simd> Lane<S> {
-    /// ln x of positive numbers that are neither infinite nor as small as no double is with all of its digits, to a few units in the last place beside that of x = 1.
+    /// ln x of finite, normal x > 0, to a few ulp; near x = 1 the error is absolute.
     #[inline(always)]
     pub(crate) fn ln(self) -> Self {
         let w = Wide(self.simd);

@@ -16,7 +16,7 @@ use super::{Lane, Wide};
 /// Bits of the exponent, and of the mantissa.
 const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
 const MANTISSA: u64 = 0x000f_ffff_ffff_ffff;
-/// What the exponent of a double has more than that of the power of two.
+/// Bias of the exponent of a double.
 const BIAS: f64 = 1023.0;
 /// The number whose last whole digit is the first bit of the upper half.
 const UPPER: f64 = 1_048_576.0;

@@ -19,7 +19,7 @@ const DIGITS: f64 = 1_099_511_627_776.0;
 /// x ↦ xⁿ of positive numbers, as long as the result is a number with all of its digits.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FixedPower {
-    /// n, rounded to 40 digits behind the point, and what is missing.
+    /// n, rounded to 40 digits after the point, and what is missing.
     exponent: [f64; 2],
     /// mⁿ of (m − MIDDLE)/HALF. For exponents up to 2 the error of the interpolation is below that of rounding.
     within: Polynomial,

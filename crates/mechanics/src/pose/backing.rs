@@ -6,7 +6,7 @@ use chaindrive_geometry::{ArcSpline, GeometryError, Piece, Point};
 const THICKNESS: f64 = 0.4;
 /// Share of the radius of a bulging arc that the material may fill.
 const FILLED: f64 = 0.5;
-/// How far chords stand off the face, in fractions of its size.
+/// Largest distance of chords from the face, in fractions of its size.
 const COARSE: f64 = 1e-4;
 
 /// A closed polygon of the face and a line behind it.

@@ -2,7 +2,7 @@
 
 use chaindrive_geometry::{ArcSpline, GeometryError, Piece, Point, Segment, Vector};
 
-use super::{Body, BodyKind, backing, carried};
+use super::{Body, BodyKind, backing, carried_bodies};
 use crate::drive::Parts;
 
 /// Length of a drawn plunger in pitches: long enough to show which way it pushes.
@@ -42,7 +42,9 @@ pub(super) fn of(parts: &Parts) -> Result<Vec<Body>, GeometryError> {
     }
     for (index, tensioner) in parts.tensioners.iter().enumerate() {
         let origin = tensioner.carrier.origin();
-        let lines = tensioner.carrier.lines(&carried::by(parts, index), pitch);
+        let lines = tensioner
+            .carrier
+            .lines(&carried_bodies::by(parts, index), pitch);
         let lines = lines
             .into_iter()
             .map(|line| line.map(|p| p - origin.coords));

@@ -31,7 +31,7 @@
 //!
 //! So every point of the surface belongs to one feature, every feature to one stretch, and a stretch is at most one contact.
 //! The tip of a tooth belongs to the last stretch of one gap and the first of the next: a contact that is carried over it keeps
-//! its memory (see `contact/look.rs`).
+//! its memory (see `contact/faced_surface.rs`).
 
 use chaindrive_geometry::{Piece, Point, Segment, Vector};
 
@@ -51,7 +51,7 @@ pub(crate) struct Stretch {
     pub(crate) extent: Extent,
 }
 
-/// How the features of a stretch are passed.
+/// Ways to pass the features of a stretch.
 #[derive(Clone, Debug)]
 pub(crate) enum Extent {
     /// All of them one way.
@@ -62,7 +62,7 @@ pub(crate) enum Extent {
     Divided(Box<Divide>),
 }
 
-/// Where a stretch is passed to the left instead.
+/// Part of a stretch that is passed to the left instead.
 #[derive(Clone, Debug)]
 pub(crate) struct Divide {
     pub(crate) left: Profile,
@@ -92,7 +92,7 @@ impl GapFace {
             };
         };
         let outward = |mut profile: Profile, end: bool| {
-            // Behind a tangent that stands for a hollow the flank begins.
+            // After a tangent that stands for a hollow the flank begins.
             if end && profile.features.len() > 1 {
                 profile.flank = Some(1);
             }

@@ -19,7 +19,7 @@ use std::f64::consts::FRAC_PI_2;
 use chaindrive_geometry::{Point, Vector};
 use pulp::Simd;
 
-use super::{Chosen, Feature, Profile};
+use super::{Feature, LaneFeatures, Profile};
 use crate::lanes::{LANES, Lane, Wide};
 
 /// Rows longer than this are looked up for every roller. Nanoseconds a roller, with eight rollers side by side (see the test
@@ -36,7 +36,7 @@ pub(super) const LONG: usize = 96;
 /// Rows longer than this are looked up for plates, which ask feature by feature.
 pub(super) const FEW: usize = 8;
 
-/// Where every reach of a row ends: the index behind its last feature.
+/// Where every reach of a row ends: the index after its last feature.
 pub(super) fn reaches(features: &[Feature]) -> Box<[usize]> {
     let mut ends = Vec::new();
     // Heading since the reach began, and its least and largest.
@@ -123,14 +123,14 @@ impl Profile {
 
     /// The features that circles at (x, y) belong to, looked up one after the other.
     #[inline(always)]
-    pub(super) fn looked_up<S: Simd>(&self, w: Wide<S>, [x, y]: [Lane<S>; 2]) -> Chosen<S> {
+    pub(super) fn looked_up<S: Simd>(&self, w: Wide<S>, [x, y]: [Lane<S>; 2]) -> LaneFeatures<S> {
         let [mut at_x, mut at_y] = [[0.0; LANES]; 2];
         x.store(&mut at_x, 0);
         y.store(&mut at_y, 0);
         let mut found = [[0.0; LANES]; 6];
         self.look_up(&at_x[..Wide::<S>::COUNT], &at_y, &mut found);
         let [cx, cy, radius, sign, mx, my] = found.map(|numbers| w.load(&numbers, 0));
-        Chosen {
+        LaneFeatures {
             centre: [cx, cy],
             radius,
             sign,

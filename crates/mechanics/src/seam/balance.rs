@@ -14,7 +14,7 @@ pub(crate) struct Unknown {
     pub(crate) lever: f64,
 }
 
-/// How much of the outer loads acts.
+/// Shares of the outer loads that act.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Load {
     pub(crate) gravity: f64,

@@ -69,14 +69,14 @@ pub struct EventKinds {
 pub(crate) struct EventLog {
     pub(crate) kinds: EventKinds,
     /// Wheels, rails, joints, bushes, each times the rollers.
-    places: Vec<Place>,
+    places: Vec<LoggedPair>,
     pub(crate) ended: Vec<ContactEvent>,
     pub(crate) time: f64,
 }
 
-/// Where two things can touch.
+/// A pair of surfaces that can touch, with its state.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-struct Place {
+struct LoggedPair {
     /// As the last accepted state left the surfaces, if they have been near each other.
     before: Option<ContactState>,
     /// The contact, while it lasts.
@@ -88,7 +88,7 @@ impl EventLog {
     pub(crate) fn new(kinds: EventKinds, places: usize) -> Self {
         Self {
             kinds,
-            places: vec![Place::default(); places],
+            places: vec![LoggedPair::default(); places],
             ..Self::default()
         }
     }

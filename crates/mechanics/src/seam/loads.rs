@@ -1,4 +1,4 @@
-//! What a chain does to the bodies that it touches.
+//! Loads of a chain on the bodies that it touches.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +19,6 @@ pub(crate) struct Loads {
     pub(crate) rail_wrenches: Vec<Wrench>,
     /// Frames of the wheels, then of the rails.
     pub(crate) frames: Vec<Frame>,
-    /// How their origins go on with the tensioners that carry them, for chains that solve equations.
+    /// Derivatives of the frame origins by the tensioners that carry them, for chains that solve equations.
     pub(crate) ways: Vec<Option<Way>>,
 }

@@ -3,7 +3,7 @@
 use chaindrive_geometry::{Point, Vector};
 use serde::{Deserialize, Serialize};
 
-/// How far a point goes with one coordinate: entry, first and second derivative.
+/// Derivatives of a point by one coordinate: entry, first and second.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Way {
     pub(crate) entry: usize,
@@ -63,7 +63,7 @@ impl Moving {
         }
     }
 
-    /// What moves it.
+    /// Coordinates that move it.
     pub(crate) fn ways(&self) -> &[Way] {
         &self.ways[..self.count]
     }

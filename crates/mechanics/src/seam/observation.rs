@@ -1,4 +1,4 @@
-//! What can be read off a state, as data.
+//! Readings of a state, as plain data.
 
 use serde::{Deserialize, Serialize};
 
@@ -99,7 +99,7 @@ pub struct Observation {
 }
 
 impl Observation {
-    /// Appends the rollers of a chain, copies behind the last one apart.
+    /// Appends the rollers of a chain, without the copies after the last one.
     pub(crate) fn add_rollers(&mut self, pose: Pose<'_>, rollers: usize) {
         self.roller_x.extend_from_slice(&pose.x[..rollers]);
         self.roller_y.extend_from_slice(&pose.y[..rollers]);

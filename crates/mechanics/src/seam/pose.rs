@@ -2,7 +2,7 @@
 
 use chaindrive_integrate::Moment;
 
-/// Where the rollers are and how they move, ghosts behind the last one included.
+/// Positions and velocities of the rollers, with the ghosts after the last one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pose<'a> {
     pub(crate) x: &'a [f64],

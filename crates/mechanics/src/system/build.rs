@@ -5,11 +5,11 @@ use std::ops::Range;
 
 use chaindrive_geometry::Point;
 
-use super::sideways::Sideways;
+use super::offset_spans::OffsetSpans;
 use super::{Group, Member, System};
 use crate::bodies::{
-    Anchor, Bodies, BodyContacts, Inputs, OnRail, OnWheel, Rail, RailContact, RailSupport, Shaft,
-    Slide, Turn, TurnedBy, Wheel, WheelSupport,
+    Anchor, Bodies, BodyContacts, GuideContacts, Inputs, Rail, RailContact, RailSupport, Shaft,
+    Slide, Turn, TurnedBy, Wheel, WheelContacts, WheelSupport,
 };
 use crate::chains;
 use crate::contact::{Arrivals, Impacts};
@@ -18,12 +18,12 @@ use crate::drive::{Guide, GuideSupport, Parts, PlacedChain, Rotation, Sprocket, 
 use crate::groups::groups;
 use crate::profile::{GapFace, RailFace};
 use crate::tensioner::Weight;
-use crate::trains::{InTrain, trains};
+use crate::trains::{TrainMember, trains};
 use crate::{AssemblyError, Chain, Motion, Push};
 
 /// A drive with its chains laid: where everything is when it begins.
 #[derive(Clone, Debug)]
-pub(crate) struct Laid {
+pub(crate) struct LaidDrive {
     /// The parts, moved to where the chains close.
     pub(crate) parts: Parts,
     /// The chains, in the order of the parts.
@@ -34,7 +34,7 @@ pub(crate) struct Laid {
     pub(crate) begin: f64,
 }
 
-/// Where a chain lies.
+/// A chain as laid, with its place in the state.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LaidChain {
     /// Roller positions.
@@ -45,17 +45,17 @@ pub(crate) struct LaidChain {
 
 impl System {
     /// Compiles a laid drive; returns the system and its positions.
-    pub(crate) fn build(laid: &Laid) -> Result<(Self, Vec<f64>), AssemblyError> {
+    pub(crate) fn build(laid: &LaidDrive) -> Result<(Self, Vec<f64>), AssemblyError> {
         let parts = &laid.parts;
         let mut q = Vec::new();
         let mut chains = Vec::new();
-        let mut touched = Touched::default();
+        let mut touched = TouchedBodies::default();
         for (placed, lies) in parts.chains.iter().zip(&laid.chains) {
             let (built, own) = chains::Chain::laid(&placed.chain, &lies.positions);
             let contacts = contacts(laid, placed, &mut touched)?;
             let mut member = Member::new(built, q.len(), contacts, lies.route.clone());
             member.name.clone_from(&placed.name);
-            member.sideways = Sideways::new(parts, placed, &lies.route);
+            member.sideways = OffsetSpans::new(parts, placed, &lies.route);
             chains.push(member);
             q.extend(own);
         }
@@ -122,19 +122,19 @@ const NO_SPROCKET: f64 = 0.1;
 
 /// Bodies that chains before this one touch.
 #[derive(Default)]
-struct Touched {
+struct TouchedBodies {
     sprockets: HashSet<usize>,
     guides: HashSet<usize>,
 }
 
 /// Contacts of a chain with everything that it can touch.
 fn contacts(
-    laid: &Laid,
+    laid: &LaidDrive,
     placed: &PlacedChain,
-    touched: &mut Touched,
+    touched: &mut TouchedBodies,
 ) -> Result<BodyContacts, AssemblyError> {
     let parts = &laid.parts;
-    let teeth = placed.sprockets.iter().map(|&wheel| OnWheel {
+    let teeth = placed.sprockets.iter().map(|&wheel| WheelContacts {
         wheel,
         first: touched.sprockets.insert(wheel),
         contacts: teeth(&parts.sprockets[wheel], &placed.chain),
@@ -143,7 +143,7 @@ fn contacts(
         arrivals: Arrivals::default(),
     });
     let rails = placed.guides.iter().map(|&rail| {
-        Ok(OnRail {
+        Ok(GuideContacts {
             rail,
             first: touched.guides.insert(rail),
             contact: face(&parts.guides[rail], &placed.chain, parts)?,
@@ -156,7 +156,7 @@ fn contacts(
     })
 }
 
-/// Where the coordinates of the bodies stand in the state, those of a group side by side.
+/// Positions of the coordinates of the bodies in the state, those of a group side by side.
 struct Places {
     slides: Vec<Option<usize>>,
     /// What turns the shafts that lead a train.
@@ -168,7 +168,7 @@ struct Places {
 }
 
 impl Places {
-    fn new(parts: &Parts, trains: &[InTrain], first: usize) -> Self {
+    fn new(parts: &Parts, trains: &[TrainMember], first: usize) -> Self {
         let mut places = Self {
             slides: vec![None; parts.tensioners.len()],
             shafts: parts.shafts.iter().map(given).collect(),
@@ -226,9 +226,9 @@ impl Places {
 }
 
 /// How a shaft, or a sprocket on it, turns from an angle on.
-fn turn(laid: &Laid, train: InTrain, angle: f64, places: &Places) -> Turn {
+fn turn(laid: &LaidDrive, train: TrainMember, angle: f64, places: &Places) -> Turn {
     let parts = &laid.parts;
-    let InTrain { leader, ratio } = train;
+    let TrainMember { leader, ratio } = train;
     // The coordinate begins at the gap angle of the first sprocket on the shaft that leads, so that the angle of a
     // sprocket alone on its shaft is the coordinate itself.
     let first = parts.sprockets.iter().position(|s| s.shaft == leader);
@@ -254,7 +254,7 @@ fn given(shaft: &crate::Shaft) -> TurnedBy {
     })
 }
 
-fn wheels(laid: &Laid, trains: &[InTrain], places: &Places) -> Vec<Wheel> {
+fn wheels(laid: &LaidDrive, trains: &[TrainMember], places: &Places) -> Vec<Wheel> {
     let sprockets = laid.parts.sprockets.iter().zip(&laid.gap_angles);
     sprockets
         .zip(&places.centres)
@@ -265,7 +265,7 @@ fn wheels(laid: &Laid, trains: &[InTrain], places: &Places) -> Vec<Wheel> {
         .collect()
 }
 
-fn shafts(laid: &Laid, trains: &[InTrain], places: &Places) -> Vec<Shaft> {
+fn shafts(laid: &LaidDrive, trains: &[TrainMember], places: &Places) -> Vec<Shaft> {
     let parts = &laid.parts;
     let lever = |leader: usize| {
         let in_train = |sprocket: &&Sprocket| trains[sprocket.shaft].leader == leader;

@@ -12,13 +12,13 @@ use crate::{MemoryError, Motion, Push};
 
 /// A body on a course from outside.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct OnCourse {
-    body: OnPath,
+pub(super) struct InputPath {
+    body: InputTarget,
     path: Path,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-enum OnPath {
+enum InputTarget {
     /// A centre along an axis.
     Centre { sprocket: usize, axis: usize },
     /// All shafts of a train.
@@ -266,7 +266,7 @@ impl System {
     }
 
     /// Bodies on courses that somebody has set.
-    pub(super) fn on_courses(&self) -> Vec<OnCourse> {
+    pub(super) fn on_courses(&self) -> Vec<InputPath> {
         let mut found = Vec::new();
         for (sprocket, wheel) in self.bodies.wheels.iter().enumerate() {
             let WheelSupport::Prescribed { x, y } = &wheel.support else {
@@ -274,8 +274,8 @@ impl System {
             };
             for (axis, motion) in [x, y].into_iter().enumerate() {
                 if let Motion::Onward(path) = motion {
-                    let body = OnPath::Centre { sprocket, axis };
-                    found.push(OnCourse { body, path: **path });
+                    let body = InputTarget::Centre { sprocket, axis };
+                    found.push(InputPath { body, path: **path });
                 }
             }
         }
@@ -283,8 +283,8 @@ impl System {
             if let TurnedBy::Driven { path, .. } | TurnedBy::Motion(Motion::Onward(path)) =
                 &shaft.turn.by
             {
-                let body = OnPath::Train(shaft.turn.train);
-                found.push(OnCourse { body, path: **path });
+                let body = InputTarget::Train(shaft.turn.train);
+                found.push(InputPath { body, path: **path });
             }
         }
         found
@@ -293,7 +293,7 @@ impl System {
     /// Sets them on these courses again, and parameters to their values.
     pub(super) fn set_again(
         &mut self,
-        courses: &[OnCourse],
+        courses: &[InputPath],
         tuned: &[(Input, f64)],
     ) -> Result<(), MemoryError> {
         let [sprockets, shafts, tensioners] = [
@@ -301,14 +301,14 @@ impl System {
             self.bodies.shafts.len(),
             self.bodies.slides.len(),
         ];
-        for &OnCourse { body, path } in courses {
+        for &InputPath { body, path } in courses {
             match body {
-                OnPath::Centre { sprocket, axis } => {
+                InputTarget::Centre { sprocket, axis } => {
                     MemoryError::unless_within("a motion of sprocket", sprocket + 1, sprockets)?;
                     let motion = self.centre_motion(sprocket, axis);
                     *motion.ok_or(MemoryError::Model)? = Motion::Onward(Box::new(path));
                 }
-                OnPath::Train(leader) => {
+                InputTarget::Train(leader) => {
                     MemoryError::unless_within("a motion of shaft", leader + 1, shafts)?;
                     self.bodies.turn_by(leader, Some(path));
                 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use chaindrive_integrate::{Moment, Prediction};
 
-use super::sideways::Sideways;
+use super::offset_spans::OffsetSpans;
 use crate::bodies::Surroundings;
 use crate::bodies::{Bodies, BodyContacts, Wheel};
 use crate::chains::{Chain, Record};
@@ -25,7 +25,7 @@ pub(crate) struct Member {
     /// Sprockets in path order, for the naming of spans.
     pub(crate) route: Vec<usize>,
     /// Its spans out of line, if it has any.
-    pub(super) sideways: Option<Sideways>,
+    pub(super) sideways: Option<OffsetSpans>,
     /// When the windows are renewed: latest time, and accepted steps to go.
     pub(super) renew: (f64, u32),
     /// ω² and damping rate of the stiffest mode.

@@ -6,7 +6,7 @@
 use chaindrive_integrate::SecondOrderSystem;
 use serde::{Deserialize, Serialize};
 
-use super::inputs::OnCourse;
+use super::inputs::InputPath;
 use super::{Member, Record, System};
 use crate::MemoryError;
 use crate::applied;
@@ -21,7 +21,7 @@ use crate::seam::Rates;
 pub struct SystemMemory {
     chains: Vec<MemberMemory>,
     inputs: Inputs,
-    courses: Vec<OnCourse>,
+    courses: Vec<InputPath>,
     events: Option<EventLog>,
     applied: applied::AppliedForces,
     time_scales: [f64; 4],

@@ -25,7 +25,7 @@ use crate::tensioner::Slopes;
 
 impl System {
     /// x ← (M + c C + k K)⁻¹ M x; false if there is no solution.
-    /// States stand behind the coordinates; a push has one at most, and it is eliminated first.
+    /// States stand after the coordinates; a push has one at most, and it is eliminated first.
     ///
     /// ```text
     /// y = (y₀ + k ∂ż/∂q x)/(1 − c ∂ż/∂z)
@@ -120,7 +120,7 @@ impl System {
         Some(())
     }
 
-    /// What one chain says of itself and of the bodies.
+    /// Answer of one chain for itself and for the bodies.
     fn answer(
         &self,
         index: usize,

@@ -42,12 +42,12 @@ macro_rules! ask {
 }
 
 /// Questions that a carrier answers.
-trait Carries: Copy {
+trait CarrierModel: Copy {
     /// Its kind in one word, as scenes write it.
     fn name(&self) -> &'static str;
 
     /// Lines from what it moves along or turns about to what it carries. For the eye: the drive knows no shape of a carrier.
-    fn lines(&self, carried: &Carried<'_>, pitch: f64) -> Vec<[Point; 2]>;
+    fn lines(&self, carried: &CarriedBodies<'_>, pitch: f64) -> Vec<[Point; 2]>;
 
     /// The plunger that pushes on it, where there is one to be seen.
     fn plunger(&self) -> Option<Plunger> {
@@ -103,8 +103,8 @@ trait Carries: Copy {
     }
 
     /// Inertia that goes with s: the carrier's own inertia and that of the masses it carries.
-    fn reduced(&self, s: f64, carried: &[Weight]) -> Reduced {
-        let mut reduced = Reduced {
+    fn reduced(&self, s: f64, carried: &[Weight]) -> ReducedInertia {
+        let mut reduced = ReducedInertia {
             inertia: self.inertia().1.unwrap_or(0.0),
             slope: 0.0,
         };
@@ -126,7 +126,7 @@ trait Carries: Copy {
     }
 }
 
-/// How far the push of a carrier is out, and how that goes on.
+/// Extension of the push of a carrier, with its derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Extension {
     /// Extension x since assembly \[m, or rad where a torque pushes\].
@@ -137,7 +137,7 @@ pub(crate) struct Extension {
 
 /// Mass or moment of inertia that goes with s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Reduced {
+pub(crate) struct ReducedInertia {
     /// I \[kg or kg m²\].
     pub(crate) inertia: f64,
     /// I′ = ∂I/∂s.
@@ -146,7 +146,7 @@ pub(crate) struct Reduced {
 
 /// Sprockets that a carrier carries, by centre and radius of the tips \[m\], and faces of guides, where they are when s = 0.
 #[derive(Clone, Debug)]
-pub(crate) struct Carried<'a> {
+pub(crate) struct CarriedBodies<'a> {
     pub(crate) sprockets: Vec<(Point, f64)>,
     pub(crate) faces: Vec<&'a ArcSpline>,
 }
@@ -162,7 +162,7 @@ impl Carrier {
     }
 
     /// Lines from what it moves along or turns about to what it carries.
-    pub(crate) fn lines(&self, carried: &Carried<'_>, pitch: f64) -> Vec<[Point; 2]> {
+    pub(crate) fn lines(&self, carried: &CarriedBodies<'_>, pitch: f64) -> Vec<[Point; 2]> {
         ask!(self, carrier => carrier.lines(carried, pitch))
     }
 
@@ -257,7 +257,7 @@ impl Carrier {
 /// Inertia and weight.
 impl Carrier {
     /// Inertia that goes with s: the carrier's own inertia and that of the masses it carries.
-    pub(crate) fn reduced(&self, s: f64, carried: &[Weight]) -> Reduced {
+    pub(crate) fn reduced(&self, s: f64, carried: &[Weight]) -> ReducedInertia {
         ask!(self, carrier => carrier.reduced(s, carried))
     }
 

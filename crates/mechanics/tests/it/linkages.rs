@@ -503,7 +503,7 @@ fn wheels_beyond_the_room_of_the_rows_change_no_answer() {
             once: true,
         };
         let inside = chain(&system, &mut record);
-        // Without the conditions of ideal joints, which stand behind.
+        // Without the conditions of ideal joints, which stand after.
         let (matrix, right) = inside.equations(weights, &b);
         let matrix = matrix.view((0, 0), (b.len(), b.len())).into_owned();
         let right = right.rows(0, b.len()).into_owned();

@@ -194,7 +194,7 @@ fn ring() -> Assembled {
     )
 }
 
-/// Impulses of all points \[N s\]: x and y blocks alternate, copies behind the originals left out.
+/// Impulses of all points \[N s\]: x and y blocks alternate, copies after the originals left out.
 fn momentum(assembled: &Assembled, v: &[f64]) -> [f64; 2] {
     let stride = v.len() / 6;
     let mut sum = [0.0; 2];
@@ -290,7 +290,7 @@ fn joints_are_solved_exactly() {
     let still = forces(&system, &state.v, &mut record);
     let c = 3e-6;
     let mut x = vec![0.0; still.len()];
-    // Copies behind the originals go with them.
+    // Copies after the originals go with them.
     let stride = x.len() / 6;
     for (i, x) in x.iter_mut().enumerate() {
         *x = (0.7 * (i / stride * 8 + i % stride % 8) as f64).sin();
@@ -340,7 +340,7 @@ fn stiffest(system: &System, state: &State) -> f64 {
     let mut value = 0.0;
     for _ in 0..40 {
         let largest = x.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        // Copies behind the originals move with them; a hundredth of a nanometre leaves contacts what they are.
+        // Copies after the originals move with them; a hundredth of a nanometre leaves contacts what they are.
         let moved = |(q, x): (&f64, &f64)| q + 1e-11 * x / largest;
         let moved: Vec<f64> = state.q.iter().zip(&x).map(moved).collect();
         let there = accelerations(&moved);

@@ -9,9 +9,9 @@ use pyo3::types::PyBytes;
 
 /// An object of the class `chaindrive.objects.Objects`.
 #[derive(Debug)]
-pub(super) struct InPython(pub(super) Py<PyAny>);
+pub(super) struct PythonObjects(pub(super) Py<PyAny>);
 
-impl InPython {
+impl PythonObjects {
     /// Asks on a thread of its own: on the main thread an answer might be Ctrl-C, which is not for the store to hear. The caller
     /// must not hold the interpreter's lock.
     fn ask<T: Send>(
@@ -32,7 +32,7 @@ impl InPython {
     }
 }
 
-impl Objects for InPython {
+impl Objects for PythonObjects {
     fn name(&self) -> String {
         let name = self.ask(|it| it.str()?.extract());
         name.unwrap_or_else(|_| "object store".to_owned())

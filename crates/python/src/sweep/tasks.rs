@@ -6,13 +6,14 @@ use std::time::Instant;
 
 use chaindrive::record::Existing;
 use chaindrive::sweep::{
-    Answer, Coordinator, Go, Place, Progress, SweepError, SweepMemory, SweepStore, Watch, Worker,
+    Answer, Coordinator, Go, Progress, StoreLocation, SweepError, SweepMemory, SweepStore, Watch,
+    Worker,
 };
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-use super::objects::InPython;
+use super::objects::PythonObjects;
 use super::{Sweep, fill};
 use crate::errors::OrRaise;
 use crate::signals::{PATIENCE, look};
@@ -50,11 +51,11 @@ pub(crate) enum Work {
     InStore(Store),
 }
 
-impl From<Store> for Place {
+impl From<Store> for StoreLocation {
     fn from(store: Store) -> Self {
         match store {
             Store::Disk(path) => Self::Disk(path),
-            Store::Objects(object) => Self::Objects(Arc::new(InPython(object))),
+            Store::Objects(object) => Self::Objects(Arc::new(PythonObjects(object))),
         }
     }
 }
@@ -101,7 +102,7 @@ impl SweepCoordinator {
         let mut raised = None;
         let store = py.detach(|| {
             let go = || heard(&mut raised, None, 0.0);
-            SweepStore::open(Place::from(store), &sweep.0, existing, workers, go)
+            SweepStore::open(StoreLocation::from(store), &sweep.0, existing, workers, go)
         });
         raised.map_or(Ok(()), Err)?;
         let store = store
@@ -273,7 +274,9 @@ impl SweepWorker {
     #[new]
     fn new(py: Python<'_>, work: Work) -> PyResult<Self> {
         let worker = match work {
-            Work::InStore(store) => py.detach(|| Worker::open(Place::from(store))).or_raise(),
+            Work::InStore(store) => py
+                .detach(|| Worker::open(StoreLocation::from(store)))
+                .or_raise(),
             Work::InMemory(recipe, variants_per_task) => {
                 let recipe = serde_json::from_str(&recipe);
                 let recipe = recipe.map_err(|error| PyValueError::new_err(error.to_string()))?;

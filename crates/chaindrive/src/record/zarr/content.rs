@@ -75,7 +75,7 @@ impl Content {
         })
     }
 
-    /// Goes on behind the samples and contacts that are in the store, with the energy at the start of the run.
+    /// Goes on after the samples and contacts that are in the store, with the energy at the start of the run.
     pub(super) fn go_on(
         &mut self,
         samples: u64,

@@ -54,7 +54,7 @@ impl EventTracks {
         })
     }
 
-    /// Goes on behind the contacts that are in the store; what there is more of them is forgotten.
+    /// Goes on after the contacts that are in the store; what there is more of them is forgotten.
     pub(super) fn go_on(&mut self, contacts: u64) -> Result<(), Fault> {
         self.chunk = contacts / EVENTS_PER_CHUNK as u64;
         #[expect(

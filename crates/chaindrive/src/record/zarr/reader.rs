@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 use zarrs::array::{ArrayMetadata, FromArrayBytes};
 
 use crate::event::EventColumn;
-use crate::record::{LoggedContact, Recorded, RecordedChannel};
+use crate::record::{LoggedContact, RecordedChannel, RecordedRun};
 use crate::zarr::{
     self, Fault, Folder, Ground, Storage, StoredArray, WriteError, is_being_written,
 };
@@ -66,7 +66,7 @@ fn looked_at(path: &Path, group: &Value) -> Result<(), ReadError> {
     })
 }
 
-impl Recorded {
+impl RecordedRun {
     /// Reads a store: the channels whose names are `wanted`, at most `most` samples of them, and the contacts.
     ///
     /// A store that says `running`, and that nobody writes, has the status `killed`.
@@ -125,9 +125,9 @@ impl Stored {
         })
     }
 
-    fn read(self, wanted: &dyn Fn(&str) -> bool, most: usize) -> Result<Recorded, Fault> {
+    fn read(self, wanted: &dyn Fn(&str) -> bool, most: usize) -> Result<RecordedRun, Fault> {
         let samples = self.length("time");
-        let stride = Recorded::stride(samples, most);
+        let stride = RecordedRun::stride(samples, most);
         let (mut names, mut channels) = (Vec::new(), Vec::new());
         for (name, about) in &self.arrays {
             let dimensions = about["dimension_names"].as_array();
@@ -153,7 +153,7 @@ impl Stored {
                 values: self.rows(name, stride)?,
             });
         }
-        Ok(Recorded {
+        Ok(RecordedRun {
             samples,
             stride,
             time: self.rows("time", stride)?,

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use chaindrive_mechanics::{Assembled, Observation};
 
 use super::counted;
-use crate::run_in::{RanIn, RecordStart};
+use crate::run_in::{RecordStart, RunInReport};
 use crate::simulate::Sample;
 use crate::{Channel, Run, RunIn, Simulation, SimulationError};
 
@@ -150,7 +150,7 @@ impl<'a> RecordBuffer<'a> {
         let simulation = self.simulation.begun_at(start.clone(), self.run, ahead);
         Ok(RecordStart {
             simulation: Some(simulation),
-            ran_in: Some(RanIn::lasted(start.zero, Some(is_steady))),
+            ran_in: Some(RunInReport::lasted(start.zero, Some(is_steady))),
             start,
         })
     }

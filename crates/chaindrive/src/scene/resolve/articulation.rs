@@ -7,7 +7,7 @@ use chaindrive_quantities::check;
 use serde_json::json;
 
 use super::contact::{Journal, Spring};
-use super::pressed::stiffness_under_pretension;
+use super::contact_stiffness::stiffness_under_pretension;
 use super::{Findings, contact};
 use crate::catalogue::{CatalogueChain, Number};
 use crate::scene::defaults;

@@ -1,6 +1,6 @@
 //! Chains of the catalogue: what a scene leaves out is taken from there.
 
-use chaindrive_mechanics::{Capacity, PowerLimits, Unrated};
+use chaindrive_mechanics::{Capacity, MissingRating, PowerLimits};
 use serde::Serialize;
 
 use super::Findings;
@@ -41,11 +41,11 @@ pub(super) fn roller_length(chain: &CatalogueChain) -> Option<f64> {
     chain.number(Number::InnerWidth)
 }
 
-/// What limits the power of a chain of the catalogue that has a pitch in the scene.
+/// Limit of the power of a catalogue chain; none where the scene gives another pitch.
 pub(super) fn capacity(chain: &CatalogueChain, pitch: f64) -> Capacity {
     let own = chain.number(Number::Pitch);
     if !own.is_some_and(|own| (pitch - own).abs() <= SAME_PITCH * own) {
-        return Capacity::Unknown(Unrated::OtherPitch);
+        return Capacity::Unknown(MissingRating::OtherPitch);
     }
     if let Some(limits) = american(chain, pitch) {
         return Capacity::American(limits);
@@ -57,7 +57,7 @@ pub(super) fn capacity(chain: &CatalogueChain, pitch: f64) -> Capacity {
     let kin = catalogue().iter().filter(|it| is_kin(it));
     let mut limits = kin.filter_map(|it| american(it, pitch));
     let twin = limits.find(|limits| limits.plates > LIGHT);
-    Capacity::Unknown(Unrated::SourceMissing { twin })
+    Capacity::Unknown(MissingRating::SourceMissing { twin })
 }
 
 /// Factor of the plates of number 41, which are lighter than those of the other chains.
@@ -99,7 +99,7 @@ pub(super) fn completed(
     findings: &mut Findings<'_>,
 ) -> schema::Chain {
     let mut text = text.clone();
-    let mut take = Taking { chain, findings };
+    let mut take = CatalogueDefaults { chain, findings };
     take.number(&mut text.pitch, "pitch", Number::Pitch);
     take.number(
         &mut text.roller_diameter,
@@ -150,12 +150,12 @@ pub(super) fn completed(
 }
 
 /// Takes from the catalogue what a scene leaves open.
-struct Taking<'c, 'f, 't> {
+struct CatalogueDefaults<'c, 'f, 't> {
     chain: &'c CatalogueChain,
     findings: &'f mut Findings<'t>,
 }
 
-impl Taking<'_, '_, '_> {
+impl CatalogueDefaults<'_, '_, '_> {
     fn roller(&mut self, text: &mut schema::Chain) {
         let roller = text.roller.get_or_insert_default();
         self.number(&mut roller.mass, "roller.mass", Number::RollerMass);

@@ -1,21 +1,21 @@
 //! The chain: completed from the catalogue, then lengths, masses, stiffness and damping, link by link.
 
-use chaindrive_mechanics::{Capacity, Chain, ChainModel, End, Ends, Strength, Unrated};
+use chaindrive_mechanics::{Capacity, Chain, ChainModel, End, Ends, MissingRating, Strength};
 
 use super::articulation::{self, Joints};
 use super::body::Body;
-use super::chains::Described;
+use super::chains::ChainDescription;
 use super::law::Pair;
 use super::scatter::Normal;
 use super::stack::Parts;
-use super::{Findings, catalogue, count, links, motion, strands};
+use super::{Findings, catalogue, link_count, links, motion, strands};
 use crate::catalogue::CatalogueChain;
 use crate::scene::defaults;
 use crate::scene::schema::{self, SceneText};
 
-/// The chain, and what contacts want to know of it.
+/// The chain, with the dimensions that its contacts need.
 #[derive(Debug)]
-pub(super) struct Resolved {
+pub(super) struct ResolvedChain {
     pub(super) chain: Chain,
     /// Length of the rollers on the teeth \[m\], where it is known.
     pub(super) roller_length: Option<f64>,
@@ -25,7 +25,7 @@ pub(super) struct Resolved {
     pub(super) uncounted: Option<String>,
 }
 
-impl Resolved {
+impl ResolvedChain {
     /// A roller before it meets a surface.
     pub(super) fn roller(&self) -> Pair {
         Pair {
@@ -48,9 +48,9 @@ impl Resolved {
 
 pub(super) fn resolve(
     scene: &SceneText,
-    described: &Described<'_>,
+    described: &ChainDescription<'_>,
     findings: &mut Findings<'_>,
-) -> Option<Resolved> {
+) -> Option<ResolvedChain> {
     let written = described.text;
     // The roller diameter matters where there is a sprocket or guide.
     let touched = !(described.sprockets.is_empty() && described.guides.is_empty());
@@ -72,10 +72,10 @@ pub(super) fn resolve(
         findings.refuse_with("chain.pitch", "missing", "give the nominal pitch");
         return None;
     };
-    let count::Count {
+    let link_count::Count {
         links: number,
         uncounted,
-    } = count::links(scene, described, text, pitch, findings)?;
+    } = link_count::links(scene, described, text, pitch, findings)?;
     let lengths = lengths(text, pitch, number, findings);
     let roller_diameter = match text.roller_diameter {
         Some(diameter) => diameter.0,
@@ -142,7 +142,7 @@ pub(super) fn resolve(
         model,
         strength: strength(text, of_type, pitch, findings),
     };
-    Some(Resolved {
+    Some(ResolvedChain {
         chain,
         roller_length,
         behind_teeth,
@@ -150,7 +150,7 @@ pub(super) fn resolve(
     })
 }
 
-/// What the chain is made for. Strands and service factor count where it can be rated, and are assumed there only.
+/// Strength and rating of the chain. Strands and service factor count where it can be rated, and are assumed there only.
 fn strength(
     text: &schema::Chain,
     of_type: Option<&CatalogueChain>,
@@ -160,7 +160,7 @@ fn strength(
     let given = text.rated_power.map(|power| Capacity::Given(power.0));
     let of_type_or_none = of_type.map(|chain| catalogue::capacity(chain, pitch));
     let capacity = given.or(of_type_or_none).unwrap_or_default();
-    let is_rated = !matches!(capacity, Capacity::Unknown(Unrated::NoType));
+    let is_rated = !matches!(capacity, Capacity::Unknown(MissingRating::NoType));
     let default = Strength::default();
     let service_factor = match text.service_factor {
         None if is_rated => findings

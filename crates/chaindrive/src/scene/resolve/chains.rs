@@ -6,7 +6,7 @@ use crate::scene::suggest::one_of;
 
 /// A chain as written, with its route and all that it can touch.
 #[derive(Clone, Debug)]
-pub(super) struct Described<'s> {
+pub(super) struct ChainDescription<'s> {
     /// Its name; none where there is one chain only.
     pub(super) name: Option<&'s str>,
     pub(super) text: &'s Chain,
@@ -21,7 +21,7 @@ pub(super) fn described<'s>(
     scene: &'s SceneText,
     names: &Names<'s>,
     findings: &mut Findings<'_>,
-) -> Option<Vec<Described<'s>>> {
+) -> Option<Vec<ChainDescription<'s>>> {
     let Some(text) = &scene.chain else {
         return several(scene, names, findings);
     };
@@ -37,7 +37,7 @@ pub(super) fn described<'s>(
             findings.refuse_with(&path, "there is one chain only, and it has no name", hint);
         }
     }
-    Some(vec![Described {
+    Some(vec![ChainDescription {
         name: None,
         text,
         route: scene.route.as_ref(),
@@ -46,7 +46,7 @@ pub(super) fn described<'s>(
     }])
 }
 
-/// Where bodies name the chain that they belong to: sprockets, then guides.
+/// Paths at which bodies name the chain that they belong to: sprockets, then guides.
 fn said(scene: &SceneText) -> impl Iterator<Item = (String, Option<&String>)> {
     let sprockets = scene.sprockets.iter().enumerate();
     let sprockets = sprockets.map(|(i, it)| (format!("sprockets[{i}].chain"), it.chain.as_ref()));
@@ -59,9 +59,9 @@ fn several<'s>(
     scene: &'s SceneText,
     names: &Names<'s>,
     findings: &mut Findings<'_>,
-) -> Option<Vec<Described<'s>>> {
+) -> Option<Vec<ChainDescription<'s>>> {
     if scene.route.is_some() {
-        let hint = "every chain has its own: `[chains.route]` behind its `[[chains]]`";
+        let hint = "every chain has its own: `[chains.route]` after its `[[chains]]`";
         findings.refuse_with("route", "several chains have no common route", hint);
     }
     // One entry a body, sprockets first.
@@ -126,7 +126,7 @@ fn several<'s>(
         .chains
         .iter()
         .enumerate()
-        .map(|(index, chain)| Described {
+        .map(|(index, chain)| ChainDescription {
             name: Some(&chain.name),
             text: &chain.chain,
             route: chain.route.as_ref(),

@@ -1,4 +1,4 @@
-//! Contacts: what a sprocket or guide says, completed by what holds for all.
+//! Contacts: the keys of a sprocket or guide, completed by those that hold for all of its kind.
 
 use chaindrive_contact::dissipation::{Hysteresis, Viscous};
 use chaindrive_contact::{Dissipation, Elastic, Film, Friction, Law, Lubricant};
@@ -43,16 +43,16 @@ pub(super) const ROLLERS: Fallback = Fallback {
     restitution: &defaults::ROLLERS_RESTITUTION,
 };
 
-/// Description of one contact in a scene: its own words at `path`, then what holds for all of its kind.
+/// A contact as a scene describes it: its own keys at `path`, completed by those that hold for all of its kind.
 #[derive(Clone, Copy)]
-pub(super) struct Said<'a> {
+pub(super) struct ContactText<'a> {
     pub(super) own: &'a Contact,
     pub(super) path: &'a str,
     pub(super) common: &'a Contact,
     pub(super) fallback: Fallback,
 }
 
-impl<'a> Said<'a> {
+impl<'a> ContactText<'a> {
     /// The text under a key and its place: that of the contact, or else that for all.
     fn text<T>(&self, key: &str, under: fn(&Contact) -> Option<&T>) -> Option<(&'a T, String)> {
         let own = under(self.own).map(|text| (text, self.path));
@@ -90,7 +90,7 @@ impl<'a> Said<'a> {
         film::resolve(text, strip, findings.at(path))
     }
 
-    /// How it rubs.
+    /// Its friction law.
     pub(super) fn friction(&self, findings: &mut Findings<'_>) -> Option<Friction> {
         if let Some((text, path)) = self.text("friction", |contact| contact.friction.as_ref()) {
             return friction(text, Journal::default(), findings.at(path));
@@ -99,7 +99,7 @@ impl<'a> Said<'a> {
         Some(Friction::None)
     }
 
-    /// How it pushes; `absent` as in [`Said::surface`].
+    /// Its normal force; `absent` as in [`ContactText::surface`].
     pub(super) fn law(
         &self,
         pair: Pair,
@@ -121,20 +121,20 @@ impl<'a> Said<'a> {
         })
     }
 
-    /// Where the scene gives a law, if it does.
+    /// Path at which the scene gives a law, if it does.
     pub(super) fn law_path(&self) -> Option<String> {
         let (_, path) = self.text("law", |contact| contact.law.as_ref())?;
         Some(path)
     }
 
-    /// Stiffness \[N/m\] of what lies behind, where the scene says something of it; zero is rigid.
+    /// Stiffness \[N/m\] behind the surfaces, if the scene gives one; zero is rigid.
     pub(super) fn series(&self) -> Option<f64> {
         let own_stack = self.own.stack.is_some();
         let common = self.common.series.filter(|_| !own_stack);
         self.own.series.or(common).map(f64::from)
     }
 
-    /// Parts that lie behind, where the scene asks for them, and the place where it does; refused beside a stiffness.
+    /// Parts that yield behind the surfaces, with the path at which the scene asks for them; refused beside a stiffness.
     pub(super) fn stack(&self, findings: &mut Findings<'_>) -> Option<(Stack, String)> {
         let own = (self.own, self.path);
         let common = (self.common, self.fallback.path);
@@ -216,12 +216,12 @@ impl<'a> Said<'a> {
     }
 }
 
-/// Stiffness of a spring that holds what sticks, where the scene is silent.
+/// Spring that holds a sticking contact, where the scene gives none.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spring {
     /// Unit of the multiple \[N/m\].
     pub(super) unit: f64,
-    /// How many of them.
+    /// Multiple of that unit.
     pub(super) factor: &'static Default,
 }
 

@@ -7,7 +7,7 @@ use chaindrive_mechanics::Flank;
 
 use serde_json::Value as Json;
 
-use super::chain::Resolved;
+use super::chain::ResolvedChain;
 use super::cursor::Cursor;
 use super::law::{elastic, steel};
 use crate::scene::defaults;
@@ -19,7 +19,7 @@ pub(super) fn resolve(
     text: &schema::Sprocket,
     scene: &SceneText,
     gap: &ToothGap,
-    chain: &Resolved,
+    chain: &ResolvedChain,
     mut at: Cursor<'_, '_>,
 ) -> Option<Flank> {
     let diameter = chain.chain.roller_diameter;
@@ -50,7 +50,7 @@ pub(super) fn resolve(
 }
 
 /// The enhanced cylindrical law of the roller on the first arc that bulges behind the seat; and as a scene writes it.
-fn on_bulge(gap: &ToothGap, chain: &Resolved, steel: Elasticity) -> Option<(Elastic, Json)> {
+fn on_bulge(gap: &ToothGap, chain: &ResolvedChain, steel: Elasticity) -> Option<(Elastic, Json)> {
     let pieces = gap.pieces();
     let hollow = |piece: &Piece| matches!(piece, Piece::Arc(arc) if arc.sweep < 0.0);
     let last = pieces.iter().rposition(hollow)?;

@@ -5,11 +5,11 @@ use std::f64::consts::TAU;
 use chaindrive_geometry::{Arc, ArcSpline, GeometryError, Piece, Point, bar, rail};
 use chaindrive_mechanics::{Guide, GuideSupport, Sprocket, Touches};
 
-use super::chain::Resolved;
+use super::chain::ResolvedChain;
 use super::cursor::Cursor;
 use super::film::Strip;
 use super::law::linear;
-use super::on_span::{self, Passing};
+use super::on_span::{self, GuidedChain};
 use super::{Findings, Names, contact, motion, point};
 use crate::scene::defaults;
 use crate::scene::schema::{self, Face, SceneText, TravelSide};
@@ -21,7 +21,7 @@ pub(super) fn resolve_all<'c>(
     names: &Names<'_>,
     findings: &mut Findings<'_>,
     sprockets: &[Sprocket],
-    chain_of: impl Fn(usize) -> (&'c Resolved, Passing<'c>),
+    chain_of: impl Fn(usize) -> (&'c ResolvedChain, GuidedChain<'c>),
 ) -> Option<Vec<Guide>> {
     let guides = scene.guides.iter().enumerate();
     let guides: Vec<_> = guides
@@ -43,7 +43,7 @@ fn resolve(
     text: &schema::Guide,
     scene: &SceneText,
     names: &Names<'_>,
-    ((chain, passing), sprockets): ((&Resolved, Passing<'_>), &[Sprocket]),
+    ((chain, passing), sprockets): ((&ResolvedChain, GuidedChain<'_>), &[Sprocket]),
     mut at: Cursor<'_, '_>,
 ) -> Option<Guide> {
     let mut of_face = at.key("face");
@@ -56,7 +56,7 @@ fn resolve(
     };
     let support = support(text, scene, names, at.key("support"));
     let at = at.key("contact");
-    let said = contact::Said {
+    let said = contact::ContactText {
         own: &text.contact,
         path: &at.path,
         common: &scene.contact.guides,
@@ -83,7 +83,7 @@ fn resolve(
 /// Working face on a span.
 fn on_span(
     guide: &schema::Guide,
-    (chain, passing, sprockets): (&Resolved, &Passing<'_>, &[Sprocket]),
+    (chain, passing, sprockets): (&ResolvedChain, &GuidedChain<'_>, &[Sprocket]),
     mut at: Cursor<'_, '_>,
 ) -> Option<ArcSpline> {
     let Face::OnSpan {

@@ -1,7 +1,7 @@
 //! Elastic laws: what a scene says, completed by the surfaces that touch.
 
 use chaindrive_contact::elastic::{
-    CylinderLaw, Cylinders, Given, Johnson, Power, Specification, Surfaces,
+    CurveOrBodies, CylinderLaw, Cylinders, Johnson, Power, Specification, Surfaces,
 };
 use chaindrive_contact::{Elastic, Elasticity, ParameterError};
 use serde_json::json;
@@ -61,8 +61,8 @@ pub(super) fn elastic(
     let keys = at.completed(law);
     let law: Specification = at.read(keys, Specification::check)?;
     match law.given() {
-        Given::Curve(law) => Some(law),
-        Given::Bodies(CylinderLaw::Hertz, bodies) => {
+        CurveOrBodies::Curve(law) => Some(law),
+        CurveOrBodies::Bodies(CylinderLaw::Hertz, bodies) => {
             let Sides {
                 radius,
                 other,
@@ -71,7 +71,7 @@ pub(super) fn elastic(
             let other = other.unwrap_or(f64::INFINITY);
             Some(Power::hertz_pair(radius, other, modulus).into())
         }
-        Given::Bodies(kind, bodies) => cylinders(kind, &bodies, pair, at),
+        CurveOrBodies::Bodies(kind, bodies) => cylinders(kind, &bodies, pair, at),
     }
 }
 

@@ -14,9 +14,9 @@ use serde_json::json;
 
 use super::articulation::Joints;
 use super::body::Body;
+use super::contact_stiffness::{PRESSED, stiffness_under_pretension};
 use super::film::Strip;
 use super::law::{Pair, cylindrical, elastic, steel};
-use super::pressed::{PRESSED, stiffness_under_pretension};
 use super::{Findings, contact, strands};
 use crate::scene::defaults;
 use crate::scene::schema::{self, Rollers, Route, SceneText};
@@ -97,12 +97,12 @@ fn refuse_of_particles(text: &schema::Chain, findings: &mut Findings<'_>) {
 }
 
 /// Values that must be there, and what to say where they are not.
-struct Needs<'f, 't> {
+struct RequiredValues<'f, 't> {
     findings: &'f mut Findings<'t>,
     of_type: Option<String>,
 }
 
-impl Needs<'_, '_> {
+impl RequiredValues<'_, '_> {
     fn value(&mut self, value: Option<impl Into<f64>>, key: &str, what: &str) -> Option<f64> {
         if value.is_none() {
             let hint = match &self.of_type {
@@ -128,7 +128,7 @@ pub(super) fn resolve(
     findings: &mut Findings<'_>,
 ) -> Option<Body> {
     refuse_of_particles(text, findings);
-    let mut needs = Needs {
+    let mut needs = RequiredValues {
         findings,
         of_type: text.of_type.clone(),
     };
@@ -167,7 +167,7 @@ fn points(
     roller_length: Option<f64>,
     findings: &mut Findings<'_>,
 ) -> Option<ChainModel> {
-    let mut needs = Needs {
+    let mut needs = RequiredValues {
         findings,
         of_type: text.of_type.clone(),
     };
@@ -196,7 +196,11 @@ fn points(
     }))
 }
 
-fn link(text: Option<schema::Link>, name: &str, needs: &mut Needs<'_, '_>) -> Option<LinkBody> {
+fn link(
+    text: Option<schema::Link>,
+    name: &str,
+    needs: &mut RequiredValues<'_, '_>,
+) -> Option<LinkBody> {
     let text = text.unwrap_or_default();
     let what = format!("mass of an {name} link");
     let mass = needs.value(text.mass, &format!("{name}.mass"), &what);
@@ -219,7 +223,7 @@ fn rollers(
     text: &schema::Chain,
     roller_diameter: f64,
     length: Option<f64>,
-    needs: &mut Needs<'_, '_>,
+    needs: &mut RequiredValues<'_, '_>,
 ) -> Option<RollerModel> {
     let roller = text.roller.clone().unwrap_or_default();
     let model = text.rollers.unwrap_or_else(|| {
@@ -274,7 +278,7 @@ fn rollers(
                 bore: Some(bore),
                 length,
             };
-            let said = contact::Said {
+            let said = contact::ContactText {
                 own: &roller.contact,
                 path: "chain.roller.contact",
                 common: &scene.contact.rollers,
@@ -302,7 +306,7 @@ fn joint(
     (scene, route): (&SceneText, Option<&Route>),
     text: &schema::Chain,
     roller_diameter: f64,
-    needs: &mut Needs<'_, '_>,
+    needs: &mut RequiredValues<'_, '_>,
 ) -> Option<Joint> {
     if text.model == schema::ChainModel::IdealJoints {
         return Some(Joint::Ideal);
@@ -330,7 +334,7 @@ fn joint(
         bore: Some(bore),
         length: joint.length.map(f64::from),
     };
-    let said = contact::Said {
+    let said = contact::ContactText {
         own: &joint.contact,
         path: "chain.joint.contact",
         common: &scene.contact.joints,
@@ -371,11 +375,11 @@ fn joint(
 
 /// Law of pins that fill their bores: they touch all around, and only the link beside them yields.
 fn without_play(
-    said: contact::Said<'_>,
+    said: contact::ContactText<'_>,
     pair: Pair,
     known: &Joints<'_>,
     points: bool,
-    needs: &mut Needs<'_, '_>,
+    needs: &mut RequiredValues<'_, '_>,
 ) -> Option<Law> {
     if points {
         let message = "free rollers of a particle chain need pins with play";
@@ -412,7 +416,7 @@ fn without_play(
 
 /// Law of what turns in a bore; steel, and the enhanced cylindrical law, unless the scene says more.
 fn law(
-    said: contact::Said<'_>,
+    said: contact::ContactText<'_>,
     pair: Pair,
     clearance: f64,
     name: &str,

@@ -6,7 +6,7 @@ mod catalogue;
 mod chain;
 mod chains;
 mod contact;
-mod count;
+mod contact_stiffness;
 mod cursor;
 mod ends;
 mod film;
@@ -14,12 +14,12 @@ mod flank;
 mod guide;
 mod housing;
 mod law;
+mod link_count;
 mod links;
 mod loss;
 mod lubricant;
 mod motion;
 mod on_span;
-mod pressed;
 mod route;
 mod scatter;
 mod shafts;
@@ -40,7 +40,7 @@ use serde_json::{Value as Json, json};
 
 pub use catalogue::chain_named;
 use cursor::Cursor;
-use on_span::Passing;
+use on_span::GuidedChain;
 
 use super::defaults;
 use super::error::{Problem, Problems};
@@ -115,14 +115,14 @@ pub(crate) fn friction(
 }
 
 /// Why the number of links of a chain is a guess.
-type Uncounted = (Option<usize>, String);
+type LinkCountGuess = (Option<usize>, String);
 
 /// The parts, and why numbers of links are guesses, where they are.
 fn parts(
     scene: &SceneText,
     names: &Names<'_>,
     findings: &mut Findings<'_>,
-) -> Option<(Parts, Vec<Uncounted>)> {
+) -> Option<(Parts, Vec<LinkCountGuess>)> {
     let described = chains::described(scene, names, findings);
     let mut resolved = Vec::new();
     for (index, chain) in described.iter().flatten().enumerate() {
@@ -135,7 +135,7 @@ fn parts(
     stack::refuse_elsewhere(scene, findings);
     let turning = shafts::resolve(scene, names, findings);
     let described = described?;
-    let resolved: Vec<chain::Resolved> = resolved.into_iter().collect::<Option<_>>()?;
+    let resolved: Vec<chain::ResolvedChain> = resolved.into_iter().collect::<Option<_>>()?;
     // Every body has an owner.
     let owner = |owner: Option<usize>| &resolved[owner.unwrap_or(0)];
     let sprockets = sprocket::resolve_all(scene, names, findings, |body| {
@@ -147,7 +147,7 @@ fn parts(
         let chain = owner(index);
         let made = &chain.chain;
         let size = [made.pitch, made.roller_diameter, made.plate_height];
-        let passing = Passing::new(scene, &described[index.unwrap_or(0)], size);
+        let passing = GuidedChain::new(scene, &described[index.unwrap_or(0)], size);
         (chain, passing)
     });
     let mut layouts = Vec::new();
@@ -257,7 +257,7 @@ pub(crate) struct Assumption {
     pub(crate) path: String,
     /// The value, in SI units.
     pub(crate) value: Json,
-    /// Where it comes from.
+    /// Its source, in words.
     pub(crate) remark: String,
 }
 
@@ -431,7 +431,7 @@ impl Findings<'_> {
         }
     }
 
-    /// Where a scene has the contacts of joints and rollers: with their chain, or for all.
+    /// Path of the contacts of joints and rollers in the scene: with their chain, or for all chains.
     fn in_scene(&self, path: &str) -> String {
         for (own, common) in [
             ("joint.contact", "contact.joints"),

@@ -8,15 +8,15 @@ use chaindrive_geometry::{
 };
 use chaindrive_mechanics::{Sprocket, Touches};
 
-use super::chains::Described;
+use super::chains::ChainDescription;
 use super::point;
 use crate::scene::schema::{self, Face, Guide, Route, SceneText, TravelSide};
 
 /// Bow at which the search for one begins, its first step and how far it goes \[pitches\].
 const SEARCH: [f64; 3] = [0.5, 0.1, 10.0];
 
-/// A chain as its guides see it.
-pub(super) struct Passing<'s> {
+/// The chain as a guide on its span needs it: stops, sizes and route.
+pub(super) struct GuidedChain<'s> {
     pub(super) scene: &'s SceneText,
     route: Option<&'s Route>,
     /// Names of the stops, in path order.
@@ -25,8 +25,12 @@ pub(super) struct Passing<'s> {
     pub(super) size: [f64; 3],
 }
 
-impl<'s> Passing<'s> {
-    pub(super) fn new(scene: &'s SceneText, described: &Described<'s>, size: [f64; 3]) -> Self {
+impl<'s> GuidedChain<'s> {
+    pub(super) fn new(
+        scene: &'s SceneText,
+        described: &ChainDescription<'s>,
+        size: [f64; 3],
+    ) -> Self {
         let route = described.route;
         let named = route.and_then(|route| route.stops.as_ref());
         let stops = if let Some(names) = named {
@@ -43,7 +47,7 @@ impl<'s> Passing<'s> {
         }
     }
 
-    /// Where the first sprocket stands within a tooth, where the route says so.
+    /// Position of the first sprocket within a tooth, if the route gives one.
     pub(super) fn phase(&self) -> Option<f64> {
         Some(self.route?.phase?.0)
     }
@@ -115,7 +119,7 @@ impl<'s> Passing<'s> {
         Some(Wheel::toothed(centre, sprocket.teeth, pitch, side))
     }
 
-    /// The sprockets before and behind a stop.
+    /// The sprockets before and after a stop.
     fn beside(&self, stop: usize) -> Option<[Wheel; 2]> {
         let count = self.stops.len();
         let before =
@@ -145,7 +149,7 @@ impl<'s> Passing<'s> {
             self.beside(stop).ok_or(alone)?
         };
         Span::between(&before, &after).map_err(|error| {
-            error.with_names(&|wheel| ["the sprocket before", "the sprocket behind"][wheel].into())
+            error.with_names(&|wheel| ["the sprocket before", "the sprocket after"][wheel].into())
         })
     }
 

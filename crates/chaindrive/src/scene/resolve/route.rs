@@ -1,9 +1,9 @@
-//! Where the chain lies at the start.
+//! Layout of the chain at the start.
 
 use chaindrive_geometry::Vector;
 use chaindrive_mechanics::{Adjust, Chain, Fit, Layout, Stop, Tighten};
 
-use super::chains::Described;
+use super::chains::ChainDescription;
 use super::cursor::Cursor;
 use super::{Findings, Names, housing, start};
 use crate::scene::defaults;
@@ -13,7 +13,7 @@ use crate::scene::suggest::one_of;
 /// The layout of a chain: as `chain.start` says, or else along the route.
 pub(super) fn layout(
     scene: &SceneText,
-    (described, chain): (&Described<'_>, &Chain),
+    (described, chain): (&ChainDescription<'_>, &Chain),
     names: &Names<'_>,
     gravity: Vector,
     findings: &mut Findings<'_>,

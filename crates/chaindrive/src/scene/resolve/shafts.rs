@@ -129,7 +129,7 @@ fn refuse_own_turning(text: &schema::Sprocket, shaft: &str, mut at: Cursor<'_, '
     at.refuse_given(given, &message, &format!("give it to `shafts.{shaft}`"));
 }
 
-type Turned<'t> = (
+type ShaftInputs<'t> = (
     &'t Option<schema::Motion<Angle, AngularSpeed>>,
     &'t Vec<schema::Torque>,
     &'t Vec<schema::Torque>,
@@ -138,7 +138,7 @@ type Turned<'t> = (
 
 /// Drive of a shaft: a motion, or torques that drive and load it.
 fn rotation(
-    (given, drive, load, speed): Turned<'_>,
+    (given, drive, load, speed): ShaftInputs<'_>,
     (scene, ends): (&SceneText, &Ends<'_>),
     mut at: Cursor<'_, '_>,
 ) -> Option<Rotation> {

@@ -6,7 +6,7 @@ use chaindrive_mechanics::{Sprocket, Support, Surface, Tolerance, ToothStack};
 
 use serde_json::json;
 
-use super::chain::Resolved;
+use super::chain::ResolvedChain;
 use super::cursor::Cursor;
 use super::film::Strip;
 use super::law::{cylindrical, linear, steel};
@@ -20,7 +20,7 @@ pub(super) fn resolve_all<'c>(
     scene: &SceneText,
     names: &Names<'_>,
     findings: &mut Findings<'_>,
-    chain_of: impl Fn(usize) -> &'c Resolved,
+    chain_of: impl Fn(usize) -> &'c ResolvedChain,
 ) -> Option<Vec<Sprocket>> {
     let sprockets = scene.sprockets.iter().enumerate();
     let sprockets: Vec<_> = sprockets
@@ -36,7 +36,7 @@ fn resolve(
     text: &schema::Sprocket,
     scene: &SceneText,
     names: &Names<'_>,
-    chain: &Resolved,
+    chain: &ResolvedChain,
     mut at: Cursor<'_, '_>,
 ) -> Option<Sprocket> {
     let (pitch, roller_diameter) = (chain.chain.pitch, chain.chain.roller_diameter);
@@ -47,7 +47,7 @@ fn resolve(
         at.key(place).keep(gap)
     });
     let support = support(text, scene, names, at.key("support"));
-    let said = contact::Said {
+    let said = contact::ContactText {
         own: &text.contact,
         path: &format!("{}.contact", at.path),
         common: &scene.contact.teeth,
@@ -104,9 +104,9 @@ fn resolve(
 /// Puts what lies behind the surface of the teeth into its law: the parts that a scene asks for, which are returned, or the default.
 fn behind(
     text: &schema::Sprocket,
-    said: &contact::Said<'_>,
+    said: &contact::ContactText<'_>,
     surface: &mut Surface,
-    chain: &Resolved,
+    chain: &ResolvedChain,
     mut at: Cursor<'_, '_>,
 ) -> Option<ToothStack> {
     let asked = said.stack(at.findings);
@@ -182,7 +182,7 @@ fn tolerance(text: &schema::Sprocket, mut at: Cursor<'_, '_>) -> Option<Toleranc
 }
 
 /// Elastic law of teeth that the scene leaves open.
-fn law(gap: &ToothGap, chain: &Resolved, mut at: Cursor<'_, '_>) -> Option<Elastic> {
+fn law(gap: &ToothGap, chain: &ResolvedChain, mut at: Cursor<'_, '_>) -> Option<Elastic> {
     if !chain.is_rigid() {
         let stiffness = chain.link_stiffness();
         return Some(linear(stiffness, &defaults::TEETH_STIFFNESS, at));

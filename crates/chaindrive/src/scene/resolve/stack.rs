@@ -1,4 +1,4 @@
-//! The stack behind a tooth, where it does not move by itself: roller on bush and bush on pin, and, where a scene asks, all parts that yield.
+//! Compliance behind a tooth that no moving body models: roller on bush, bush on pin and, where a scene asks, all parts that yield.
 //!
 //! ```text
 //! 1/k_s = δ_roller(F)/F + δ_pin(F)/F,   F: a stated share of the breaking load
@@ -16,9 +16,9 @@ use crate::catalogue::{CatalogueChain, Number};
 use crate::scene::defaults;
 use crate::scene::schema::{self, Contact, Rollers, SceneText};
 
-/// Stiffness of roller on bush and bush on pin, zero where that is nothing, and why.
+/// Stiffness of roller on bush and bush on pin in series, zero where neither counts, and its source in words.
 #[derive(Clone, Debug)]
-pub(super) struct Behind {
+pub(super) struct SeriesStiffness {
     pub(super) stiffness: f64,
     pub(super) remark: String,
 }
@@ -56,14 +56,14 @@ impl Parts {
         }
     }
 
-    /// What lies behind teeth by default, under a chain of the catalogue.
-    pub(super) fn behind(&self, findings: &Findings<'_>) -> Option<Behind> {
+    /// Default compliance behind the teeth, for chains of the catalogue.
+    pub(super) fn behind(&self, findings: &Findings<'_>) -> Option<SeriesStiffness> {
         let chain = self.of_type?;
         let default = &defaults::BEHIND_TEETH;
         let share = default.value(findings.version);
         let load = chain.number(Number::BreakingLoad).map(|it| share * it);
         let compliance = load.and_then(|load| self.contacts(load, findings));
-        Some(Behind {
+        Some(SeriesStiffness {
             stiffness: compliance.map_or(0.0, f64::recip),
             remark: format!("at {share} {}, {}", default.unit, default.basis.remark()),
         })

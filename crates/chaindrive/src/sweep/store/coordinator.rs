@@ -1,4 +1,4 @@
-//! Who begins a sweep in a store, hands out its tasks, and says in the store how far it is.
+//! The coordinator of a sweep in a store: it begins the sweep, hands out its tasks, and notes its progress in the store.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -7,14 +7,14 @@ use serde_json::{Map, Value};
 use zarrs::array::builder::ArrayBuilderFillValue;
 use zarrs::array::{DataType, data_type};
 
-use super::{Arrays, Place, StoreSink, every_chunk};
+use super::{Arrays, StoreLocation, StoreSink, every_chunk};
 use crate::channel::unit_attribute;
 use crate::sweep::coordinator::{Coordinator, Watch, carry_out};
 use crate::sweep::layout::Layout;
 use crate::sweep::sink::Sink;
 use crate::sweep::{
-    Answer, Coordinate, Finished, Go, Outcome, Progress, Quantity, Recipe, Sample, Sweep,
-    SweepError, TEXTS, Tally, Worker,
+    Answer, Coordinate, Go, Outcome, Progress, Recipe, ResultQuantity, Sample, Sweep, SweepError,
+    TEXTS, Tally, VariantCounts, Worker,
 };
 use crate::zarr::{
     Ending, Existing, Fault, LAYOUT, RECIPE, Store, StoredArray, Story, WriteError, about,
@@ -35,7 +35,7 @@ pub struct SweepStore {
     /// Layout by which the metadata of all arrays were written last, and these.
     told: Layout,
     arrays: Map<String, Value>,
-    finished: Finished,
+    finished: VariantCounts,
     tasks: usize,
     last_told: Instant,
     /// Whether the store is in its place. An earlier result stays there until a task is stored.
@@ -58,7 +58,7 @@ impl SweepStore {
     /// # Errors
     /// Those of [`begin`](Self::begin) and [`go_on`](Self::go_on), and of [`Sweep::time_sample`].
     pub fn open(
-        place: impl Into<Place>,
+        place: impl Into<StoreLocation>,
         sweep: &Sweep,
         existing: Existing,
         workers: Option<usize>,
@@ -86,14 +86,14 @@ impl SweepStore {
     /// # Errors
     /// [`WriteError`] when the place is taken or cannot be written.
     pub fn begin(
-        place: impl Into<Place>,
+        place: impl Into<StoreLocation>,
         sweep: &Sweep,
         sample: &Sample,
         existing: Existing,
     ) -> Result<Self, WriteError> {
         let store = match place.into() {
-            Place::Disk(path) => Store::begin(&path, existing)?,
-            Place::Objects(objects) => Store::begin_in(&objects, existing)?,
+            StoreLocation::Disk(path) => Store::begin(&path, existing)?,
+            StoreLocation::Objects(objects) => Store::begin_in(&objects, existing)?,
         };
         let layout = Layout::new(sweep, sample.variants_per_task, sample.account());
         let files = [
@@ -133,10 +133,10 @@ impl SweepStore {
     ///
     /// # Errors
     /// [`WriteError::OtherSweep`] where it is another one, [`WriteError::Exists`] where it is another result, and all others.
-    pub fn go_on(place: impl Into<Place>, sweep: &Sweep) -> Result<Self, WriteError> {
+    pub fn go_on(place: impl Into<StoreLocation>, sweep: &Sweep) -> Result<Self, WriteError> {
         let mut store = match place.into() {
-            Place::Disk(path) => Store::reopen_shared(&path)?,
-            Place::Objects(objects) => Store::reopen_in(&objects)?,
+            StoreLocation::Disk(path) => Store::reopen_shared(&path)?,
+            StoreLocation::Objects(objects) => Store::reopen_in(&objects)?,
         };
         let recipe = store.read(RECIPE).map_err(|fault| store.fault(fault))?;
         let Some(recipe) = recipe else {
@@ -173,7 +173,7 @@ impl SweepStore {
             sink,
             told: Layout::default(),
             arrays,
-            finished: Finished::default(),
+            finished: VariantCounts::default(),
             tasks,
             last_told: Instant::now(),
             is_public,
@@ -419,7 +419,7 @@ fn lay(store: &Store, sweep: &Sweep, layout: &Layout) -> Result<Map<String, Valu
         written.insert(axis.name.clone(), array);
     }
     for (name, units) in &layout.quantities {
-        if let Some(quantity) = Quantity::from_name(name) {
+        if let Some(quantity) = ResultQuantity::from_name(name) {
             let about = about(&units.join(" or "), quantity.description());
             let array = arrays.quantity(quantity, about)?;
             store_metadata(&array)?;
@@ -440,7 +440,7 @@ fn lay(store: &Store, sweep: &Sweep, layout: &Layout) -> Result<Map<String, Valu
 fn attributes(
     sweep: &Sweep,
     layout: &Layout,
-    finished: Finished,
+    finished: VariantCounts,
     ending: &Ending,
 ) -> Map<String, Value> {
     let mut story = Story(sweep.attributes(&layout.methods, finished, ending));

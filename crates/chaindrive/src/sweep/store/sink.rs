@@ -8,13 +8,14 @@ use serde::de::DeserializeOwned;
 use serde_json::Map;
 use zarrs::storage::{Bytes, StoreKey};
 
-use super::{Arrays, MARK, Place, Storage, every_chunk};
+use super::{Arrays, MARK, Storage, StoreLocation, every_chunk};
 use crate::precision::Choice;
 use crate::seal::{opened, sealed};
 use crate::sweep::layout::Layout;
 use crate::sweep::sink::{Sink, Task};
 use crate::sweep::{
-    Account, Answer, Entry, Finished, OPEN, Outcome, Quantity, Recipe, Sweep, TEXTS, chunks,
+    Account, Answer, Entry, OPEN, Outcome, Recipe, ResultQuantity, Sweep, TEXTS, VariantCounts,
+    chunks,
 };
 use crate::verdict::WrittenVerdict;
 use crate::zarr::{self, CHOICES, Fault, Folder, Ground, LAYOUT, RECIPE, WriteError};
@@ -28,9 +29,9 @@ pub(crate) struct StoreSink {
 
 impl StoreSink {
     /// The store of a sweep that was begun.
-    pub(crate) fn open(place: &Place) -> Result<Self, WriteError> {
+    pub(crate) fn open(place: &StoreLocation) -> Result<Self, WriteError> {
         match place {
-            Place::Disk(path) => {
+            StoreLocation::Disk(path) => {
                 let folder = path.canonicalize().and_then(|root| Folder::shared(&root));
                 let folder = folder.map_err(|source| WriteError::Io {
                     path: path.clone(),
@@ -38,7 +39,7 @@ impl StoreSink {
                 })?;
                 Ok(Self::on(Ground::of(Arc::new(folder)), path))
             }
-            Place::Objects(objects) => {
+            StoreLocation::Objects(objects) => {
                 let path = PathBuf::from(objects.name());
                 let bucket = zarr::bucket(&path, objects)?;
                 Ok(Self::on(Ground::of(Arc::new(bucket)), &path))
@@ -140,7 +141,7 @@ impl StoreSink {
         let region = layout.region(task);
         let arrays = self.arrays(layout);
         self.storage.on_each(&layout.quantities, |(name, _)| {
-            let Some(quantity) = Quantity::from_name(name) else {
+            let Some(quantity) = ResultQuantity::from_name(name) else {
                 return Ok(());
             };
             let array = arrays.quantity(quantity, Map::new())?;
@@ -178,7 +179,8 @@ impl StoreSink {
         }
         let mut numbers = Vec::new();
         for (name, _) in &layout.quantities {
-            let Some(quantity) = Quantity::from_name(name).filter(|it| !it.is_sampled()) else {
+            let Some(quantity) = ResultQuantity::from_name(name).filter(|it| !it.is_sampled())
+            else {
                 continue;
             };
             let mut place = region.place.clone();
@@ -246,7 +248,7 @@ impl Sink for StoreSink {
             }
             let stored = self.read_back(&layout, task)?;
             let outcomes = stored.iter().map(|(_, outcome)| outcome);
-            Ok(Task::Ended(Finished::of(outcomes)))
+            Ok(Task::Ended(VariantCounts::of(outcomes)))
         });
         found.map_err(|fault| self.failure(fault))
     }
@@ -259,7 +261,7 @@ impl Sink for StoreSink {
         });
         stored.map_err(|fault| self.failure(fault))?;
         Ok(Answer {
-            finished: Finished::of(&outcomes),
+            finished: VariantCounts::of(&outcomes),
             outcomes: Vec::new(),
         })
     }

@@ -60,10 +60,10 @@ pub(crate) fn numbers(values: impl IntoIterator<Item = f64>) -> String {
 }
 
 /// A tooth gap whose seat has the roller's own radius, 0.3 p, and holds it without a pull from the
-/// slack side: flanks β from the pull of a seated link, T' = T sin β/sin(β + 2π/z) behind it.
+/// slack side: flanks β from the pull of a seated link, T' = T sin β/sin(β + 2π/z) after it.
 ///
 /// The teeth end `tip` pitches above the pitch circle. The flank has to open by more than a link swings while its roller rises to the
-/// tip, and to leave so little tension behind the last tooth that a slack strand holds its rollers down: nine teeth seat four rollers,
+/// tip, and to leave so little tension after the last tooth that a slack strand holds its rollers down: nine teeth seat four rollers,
 /// which leave 4e-4 of a pull at β = 6°, and 3e-3 at 10°.
 pub(crate) fn holding_gap(teeth: f64, pitch: f64, flank: f64, tip: f64) -> String {
     let roller = 0.3 * pitch;

@@ -212,7 +212,7 @@ impl Bench {
         &self.seen
     }
 
-    /// Place and velocity of a body: x, y and angle. Free rollers stand behind the links.
+    /// Place and velocity of a body: x, y and angle. Free rollers stand after the links.
     pub(crate) fn body(&self, index: usize) -> [[f64; 3]; 2] {
         [&self.state.q, &self.state.v].map(|z| [0, 1, 2].map(|k| z[3 * index + k]))
     }

@@ -6,9 +6,9 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use chaindrive::record::{Ending, Existing};
-use chaindrive::sweep::{Outcome, Progress, Stacked, Sweep};
+use chaindrive::sweep::{Outcome, Progress, Sweep, SweepArrays};
 
-use crate::csv::{Claimed, VARIANT, claim, digits, failed, incomplete, named};
+use crate::csv::{TableClaim, VARIANT, claim, digits, failed, incomplete, named};
 use crate::failure::Failure;
 
 /// Wall time between two writes while the sweep goes on.
@@ -20,7 +20,7 @@ const SHARE: u32 = 20;
 /// A table in the making, which is written anew as a whole.
 #[derive(Debug)]
 pub(super) struct Table {
-    claimed: Claimed,
+    claimed: TableClaim,
     /// Whether it says in its place that the sweep goes on.
     running: bool,
     /// Variants that were finished when it was last written.
@@ -117,7 +117,7 @@ pub(super) fn refuse_channels(path: &Path, sweep: &Sweep) -> Result<(), Failure>
 pub(super) fn fill<W: Write>(
     to: W,
     sweep: &Sweep,
-    stacked: &Stacked,
+    stacked: &SweepArrays,
     ending: &Ending,
 ) -> io::Result<W> {
     let mut table = csv::Writer::from_writer(to);
@@ -138,7 +138,7 @@ pub(super) fn fill<W: Write>(
 type Column<'a> = (String, Box<dyn Fn(usize) -> String + 'a>);
 
 /// What tells the variants apart, the statistics of each, and what is said of it.
-fn columns<'a>(sweep: &'a Sweep, stacked: &'a Stacked) -> Vec<Column<'a>> {
+fn columns<'a>(sweep: &'a Sweep, stacked: &'a SweepArrays) -> Vec<Column<'a>> {
     let mut columns: Vec<Column<'a>> =
         vec![(VARIANT.to_owned(), Box::new(|variant| variant.to_string()))];
     for (which, dimension) in sweep.dimensions().iter().enumerate() {

@@ -24,7 +24,7 @@ pub(super) fn read(scene: &Scene, text: &str) -> Result<(String, Vec<Setting>), 
         }
         let ends = outside(value, "..");
         if let [first, rest] = ends.as_slice() {
-            // Behind the last slash, for units have slashes too.
+            // After the last slash, for units have slashes too.
             let count = rest.rsplit_once('/');
             let count = count.and_then(|(last, count)| Some((last, count.trim().parse().ok()?)));
             let Some((last, count)) = count else {

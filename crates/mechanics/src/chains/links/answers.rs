@@ -1,6 +1,6 @@
 //! Answers of rigid links in motion to the questions of every chain.
 
-use chaindrive_contact::Prepared;
+use chaindrive_contact::PreparedLaw;
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Moment, Weights};
 
@@ -98,7 +98,7 @@ impl Makeup for Linkage {
         false
     }
 
-    fn bearing_laws(&self) -> [Option<Prepared>; 2] {
+    fn bearing_laws(&self) -> [Option<PreparedLaw>; 2] {
         let pins = match &self.joining {
             Joining::Hinges(_) => None,
             Joining::Clearance(bearing) => Some(bearing.law),

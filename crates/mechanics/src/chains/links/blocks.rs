@@ -17,7 +17,7 @@ use crate::dense::solve_dense;
 
 /// A system under assembly, and the space for its solution.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Blocks {
+pub(crate) struct BorderedBlocks {
     pub(crate) diagonal: Vec<Matrix3<f64>>,
     /// Block (i + 1, i).
     pub(crate) below: Vec<Matrix3<f64>>,
@@ -29,7 +29,7 @@ pub(crate) struct Blocks {
     inverse: Vec<Matrix3<f64>>,
 }
 
-impl Blocks {
+impl BorderedBlocks {
     /// Makes room for `links` blocks and `border` further unknowns; diagonal and right-hand sides are
     /// left to be set.
     pub(crate) fn clear(&mut self, links: usize, border: usize) {
@@ -121,7 +121,7 @@ mod tests {
     #[test]
     fn agrees_with_a_dense_solution() {
         for (links, border) in [(1, 0), (5, 0), (7, 4), (3, 1)] {
-            let mut blocks = Blocks::default();
+            let mut blocks = BorderedBlocks::default();
             blocks.clear(links, border);
             let size = 3 * links + border;
             let mut dense = DMatrix::<f64>::zeros(size, size);
@@ -210,7 +210,7 @@ mod tests {
             let mut factor = CscCholesky::factor(&matrix).expect("positive definite");
             let mut values = matrix.values().to_vec();
             let mut x = DMatrix::from_element(size, 1, 1.0);
-            let mut blocks = Blocks::default();
+            let mut blocks = BorderedBlocks::default();
             let mut by_blocks = || {
                 blocks.clear(links, border);
                 blocks.diagonal.fill(block);

@@ -8,11 +8,11 @@ use chaindrive_integrate::Moment;
 use super::model::{Joint, RigidLinks, RollerModel};
 use super::{Body, FreeRollers, Hinges, Joining, JointState, Linkage, Shapes};
 use crate::bodies::{Bodies, GroupBodies};
-use crate::chains::LaidAs;
-use crate::chains::laid::length_through;
+use crate::chains::ChainAsLaid;
+use crate::chains::as_laid::length_through;
 use crate::chains::makeup::{Makeup, Statics};
 use crate::chains::particles::Particles;
-use crate::contact::Bearing;
+use crate::contact::BoreContact;
 use crate::joints::{JointMates, JointMemory, Mate, Pairs, turned};
 use crate::lanes::padded;
 use crate::{Chain, End};
@@ -29,7 +29,7 @@ pub(crate) fn replace(
     particles: &Particles,
     entries: Range<usize>,
     bodies: GroupBodies<'_>,
-    laid: &LaidAs<'_>,
+    laid: &ChainAsLaid<'_>,
     links: &RigidLinks,
     at: Moment<'_>,
 ) -> Replacement {
@@ -174,7 +174,7 @@ impl Linkage {
         self.joints.iter().map(offset).collect()
     }
 
-    /// Where every pin shall stand from the middle of its hole, by where it was laid and by the pull on its joint.
+    /// Offset of every pin from the centre of its hole, from the layout and the pull on its joint.
     fn seats(&self, offsets: &[Vector], pulls: &[Vector]) -> Vec<Vector> {
         let Joining::Clearance(bearing) = &self.joining else {
             return vec![Vector::zeros(); offsets.len()];
@@ -197,7 +197,7 @@ impl Linkage {
         joints.map(seat).collect()
     }
 
-    /// Velocities of the chain and, behind it, the bodies brought to where no hinge opens: what the stabilisation would otherwise
+    /// Velocities of the chain and, after it, the bodies brought to where no hinge opens: what the stabilisation would otherwise
     /// take out of the chain in its first milliseconds.
     pub(super) fn close_velocities(
         &self,
@@ -232,8 +232,8 @@ impl Linkage {
 /// Passes of [`Linkage::close_in_place`].
 const PASSES: usize = 4;
 
-/// What the laid particles pull at the side after of every joint by, from the side before \[N\]: the mean of both links, and at the
-/// ends of a strand the only one.
+/// Pull of the laid particles on the side after every joint, from the side before \[N\]: the mean of both links, and at the ends of a
+/// strand that of the only one.
 fn pulls(particles: &Particles, places: &[Point]) -> Vec<Vector> {
     let count = particles.links.count;
     let pull = |link: usize| {
@@ -250,8 +250,8 @@ fn pulls(particles: &Particles, places: &[Point]) -> Vec<Vector> {
     (0..places.len()).map(joint).collect()
 }
 
-/// Where free rollers let the bushes be: on a wheel they lie deeper by the clearance, in a span the rollers
-/// hang. Returns the shift of every bush from the particle \[m\].
+/// Shift of every bush from its particle \[m\] that the clearance of free rollers allows: on a wheel bushes lie deeper, in a span rollers
+/// hang.
 fn bush_shifts(
     particles: &Particles,
     (bodies, sprockets): (&Bodies, &[usize]),
@@ -291,8 +291,8 @@ fn bush_shifts(
     shifts.collect()
 }
 
-fn compile(particles: &Particles, laid: &LaidAs<'_>, links: &RigidLinks) -> Linkage {
-    let LaidAs {
+fn compile(particles: &Particles, laid: &ChainAsLaid<'_>, links: &RigidLinks) -> Linkage {
+    let ChainAsLaid {
         chain, pretension, ..
     } = *laid;
     let count = chain.links();
@@ -300,7 +300,7 @@ fn compile(particles: &Particles, laid: &LaidAs<'_>, links: &RigidLinks) -> Link
         Joint::Ideal => Joining::Hinges(Hinges {
             rate: stabilisation(laid.gravity, chain.pitch),
         }),
-        Joint::Clearance(joint) => Joining::Clearance(Box::new(Bearing::new(
+        Joint::Clearance(joint) => Joining::Clearance(Box::new(BoreContact::new(
             &joint.surface,
             joint.bore_radius,
             joint.pin_radius,
@@ -343,7 +343,7 @@ fn compile(particles: &Particles, laid: &LaidAs<'_>, links: &RigidLinks) -> Link
                 })
                 .collect();
             Some(FreeRollers {
-                bearing: Bearing::new(&roller.surface, roller.bore_radius, roller.bush_radius),
+                bearing: BoreContact::new(&roller.surface, roller.bore_radius, roller.bush_radius),
                 body,
                 link: link_of,
             })

@@ -4,9 +4,9 @@ use chaindrive_integrate::Array;
 
 use super::Linkage;
 
-/// Along x, along y, and of the turning; that of link i stands behind place i + 1, whole lanes.
+/// Along x, along y, and of the turning; that of link i stands after place i + 1, whole lanes.
 ///
-/// Before the first link of a closed chain stands the last and behind the last one the first; beside those of an open one
+/// Before the first link of a closed chain stands the last and after the last one the first; beside those of an open one
 /// nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ByLink {
@@ -45,7 +45,7 @@ impl ByLink {
         }
     }
 
-    /// Subtracts the numbers of all links, which stand one link behind the other there; out of line for the same reason.
+    /// Subtracts the numbers of all links, which stand one link after the other there; out of line for the same reason.
     #[inline(never)]
     pub(super) fn subtract_from(&self, all: &mut [f64]) {
         let links = all.as_chunks_mut::<3>().0;

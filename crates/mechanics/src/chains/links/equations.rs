@@ -4,15 +4,15 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::Weights;
 use nalgebra::{Matrix3, Vector3};
 
-use super::loose::Loose;
-use super::{Blocks, Linkage};
+use super::free_rollers::FreeRollerEquations;
+use super::{BorderedBlocks, Linkage};
 use crate::bodies::GroupBodies;
 use crate::chains::makeup::Makeup;
 use crate::joints::{Element, Mount, Partner, Row, cross, partner_row};
 
-/// Where a body's unknowns stand.
+/// Position of a body's unknowns in the equations.
 #[derive(Clone, Copy, PartialEq)]
-enum Place {
+enum BodyUnknowns {
     Link(usize),
     /// The last link of a closed chain, where it stands first in the border.
     Corner,
@@ -22,15 +22,15 @@ enum Place {
 /// The equations of the bodies, and the space for their solution.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Equations {
-    pub(super) blocks: Blocks,
-    pub(super) loose: Vec<Loose>,
+    pub(super) blocks: BorderedBlocks,
+    pub(super) loose: Vec<FreeRollerEquations>,
 }
 
 /// The system under assembly.
 pub(super) struct Sum<'a> {
     pub(super) linkage: &'a Linkage,
-    pub(super) blocks: &'a mut Blocks,
-    pub(super) loose: &'a mut [Loose],
+    pub(super) blocks: &'a mut BorderedBlocks,
+    pub(super) loose: &'a mut [FreeRollerEquations],
     /// Unknowns of the border.
     border: usize,
     /// Those of the wheels among them come last, from this one on.
@@ -49,8 +49,11 @@ impl<'a> Sum<'a> {
         let first = 3 * (linkage.series.links - row);
         let border = first + x.len() - linkage.coordinates();
         blocks.clear(row, border);
-        loose.resize_with(linkage.bodies.len() - linkage.series.links, Loose::default);
-        loose.iter_mut().for_each(Loose::clear);
+        loose.resize_with(
+            linkage.bodies.len() - linkage.series.links,
+            FreeRollerEquations::default,
+        );
+        loose.iter_mut().for_each(FreeRollerEquations::clear);
         Self {
             linkage,
             blocks,
@@ -67,17 +70,17 @@ impl<'a> Sum<'a> {
             let b = Vector3::new(b[3 * index], b[3 * index + 1], b[3 * index + 2]);
             let force = mass.component_mul(&b);
             match self.place(index) {
-                Place::Link(i) => {
+                BodyUnknowns::Link(i) => {
                     self.blocks.diagonal[i] = Matrix3::from_diagonal(&mass);
                     self.blocks.right[i] = force;
                 }
-                Place::Corner => {
+                BodyUnknowns::Corner => {
                     for k in 0..3 {
                         self.blocks.corner[(k, k)] = mass[k];
                         self.blocks.right_border[k] = force[k];
                     }
                 }
-                Place::Roller(i) => {
+                BodyUnknowns::Roller(i) => {
                     self.loose[i].own = Matrix3::from_diagonal(&mass);
                     self.loose[i].right = force;
                 }
@@ -125,20 +128,20 @@ impl<'a> Sum<'a> {
 
     fn found(&self, link: usize) -> Vector3<f64> {
         match self.place(link) {
-            Place::Link(i) => self.blocks.right[i],
-            Place::Corner | Place::Roller(_) => {
+            BodyUnknowns::Link(i) => self.blocks.right[i],
+            BodyUnknowns::Corner | BodyUnknowns::Roller(_) => {
                 Vector3::from_fn(|k, _| self.blocks.right_border[k])
             }
         }
     }
 
-    fn place(&self, body: usize) -> Place {
+    fn place(&self, body: usize) -> BodyUnknowns {
         if body >= self.linkage.series.links {
-            Place::Roller(body - self.linkage.series.links)
+            BodyUnknowns::Roller(body - self.linkage.series.links)
         } else if body < self.blocks.diagonal.len() {
-            Place::Link(body)
+            BodyUnknowns::Link(body)
         } else {
-            Place::Corner
+            BodyUnknowns::Corner
         }
     }
 
@@ -183,7 +186,7 @@ impl<'a> Sum<'a> {
         }
     }
 
-    /// How much velocities `b` move the two sides along a row past each other.
+    /// Relative velocity of the two sides along a row under velocities `b`.
     fn change(&self, a: Option<usize>, (row, partner): (Vector3<f64>, Row), b: &[f64]) -> f64 {
         let of = |body: usize, row: Vector3<f64>| {
             row.x * b[3 * body] + row.y * b[3 * body + 1] + row.z * b[3 * body + 2]
@@ -200,7 +203,7 @@ impl<'a> Sum<'a> {
         }
     }
 
-    /// What the force adds to the rotation of the bodies it turns: −F n·arm, where that holds them.
+    /// Contribution of the force to the rotation of the bodies that it turns: −F n·arm, where that is positive.
     fn add_bend(&mut self, element: &Element, mounts: &[Mount], weight: f64) {
         let own = -element.force * element.normal.dot(&element.arm_a);
         if let Some(body) = element.a {
@@ -221,9 +224,9 @@ impl<'a> Sum<'a> {
 
     pub(super) fn add_turn(&mut self, body: usize, value: f64) {
         match self.place(body) {
-            Place::Link(i) => self.blocks.diagonal[i][(2, 2)] += value,
-            Place::Corner => self.blocks.corner[(2, 2)] += value,
-            Place::Roller(i) => self.loose[i].own[(2, 2)] += value,
+            BodyUnknowns::Link(i) => self.blocks.diagonal[i][(2, 2)] += value,
+            BodyUnknowns::Corner => self.blocks.corner[(2, 2)] += value,
+            BodyUnknowns::Roller(i) => self.loose[i].own[(2, 2)] += value,
         }
     }
 
@@ -271,74 +274,76 @@ impl<'a> Sum<'a> {
         }
     }
 
-    fn diagonal(&mut self, place: Place, row: Vector3<f64>, weight: f64) {
+    fn diagonal(&mut self, place: BodyUnknowns, row: Vector3<f64>, weight: f64) {
         let block = row * row.transpose() * weight;
         match place {
-            Place::Link(i) => self.blocks.diagonal[i] += block,
-            Place::Corner => {
+            BodyUnknowns::Link(i) => self.blocks.diagonal[i] += block,
+            BodyUnknowns::Corner => {
                 for j in 0..3 {
                     for k in 0..=j {
                         self.blocks.corner[(j, k)] += block[(j, k)];
                     }
                 }
             }
-            Place::Roller(i) => self.loose[i].own += block,
+            BodyUnknowns::Roller(i) => self.loose[i].own += block,
         }
     }
 
     /// Adds w row otherᵀ at (place, there) and its mirror image.
     fn couple(
         &mut self,
-        place: Place,
+        place: BodyUnknowns,
         row: Vector3<f64>,
-        there: Place,
+        there: BodyUnknowns,
         other: Vector3<f64>,
         weight: f64,
     ) {
         match (place, there) {
-            (Place::Link(i), Place::Link(j)) if i == j + 1 => {
+            (BodyUnknowns::Link(i), BodyUnknowns::Link(j)) if i == j + 1 => {
                 self.blocks.below[j] += row * other.transpose() * weight;
             }
-            (Place::Link(i), Place::Link(j)) if j == i + 1 => {
+            (BodyUnknowns::Link(i), BodyUnknowns::Link(j)) if j == i + 1 => {
                 self.blocks.below[i] += other * row.transpose() * weight;
             }
-            (Place::Link(i), Place::Corner) => {
+            (BodyUnknowns::Link(i), BodyUnknowns::Corner) => {
                 for k in 0..3 {
                     self.blocks.beside[i * self.border + k] += row * (weight * other[k]);
                 }
             }
-            (Place::Corner, Place::Link(_)) => self.couple(there, other, place, row, weight),
-            (Place::Roller(i), Place::Link(_) | Place::Corner) => {
+            (BodyUnknowns::Corner, BodyUnknowns::Link(_)) => {
+                self.couple(there, other, place, row, weight)
+            }
+            (BodyUnknowns::Roller(i), BodyUnknowns::Link(_) | BodyUnknowns::Corner) => {
                 self.loose[i].link = Some(self.index(there));
                 self.loose[i].coupling += other * row.transpose() * weight;
             }
-            (Place::Link(_) | Place::Corner, Place::Roller(_)) => {
+            (BodyUnknowns::Link(_) | BodyUnknowns::Corner, BodyUnknowns::Roller(_)) => {
                 self.couple(there, other, place, row, weight);
             }
             // Other pairs never touch.
-            (Place::Link(_), Place::Link(_))
-            | (Place::Corner, Place::Corner)
-            | (Place::Roller(_), Place::Roller(_)) => {}
+            (BodyUnknowns::Link(_), BodyUnknowns::Link(_))
+            | (BodyUnknowns::Corner, BodyUnknowns::Corner)
+            | (BodyUnknowns::Roller(_), BodyUnknowns::Roller(_)) => {}
         }
     }
 
-    fn index(&self, place: Place) -> usize {
+    fn index(&self, place: BodyUnknowns) -> usize {
         match place {
-            Place::Link(i) => i,
-            Place::Corner => self.linkage.series.links - 1,
-            Place::Roller(i) => self.linkage.series.links + i,
+            BodyUnknowns::Link(i) => i,
+            BodyUnknowns::Corner => self.linkage.series.links - 1,
+            BodyUnknowns::Roller(i) => self.linkage.series.links + i,
         }
     }
 
-    fn beside(&mut self, place: Place, j: usize, row: Vector3<f64>) {
+    fn beside(&mut self, place: BodyUnknowns, j: usize, row: Vector3<f64>) {
         match place {
-            Place::Link(i) => self.blocks.beside[i * self.border + j] += row,
-            Place::Corner => {
+            BodyUnknowns::Link(i) => self.blocks.beside[i * self.border + j] += row,
+            BodyUnknowns::Corner => {
                 for k in 0..3 {
                     self.blocks.corner[(j, k)] += row[k];
                 }
             }
-            Place::Roller(i) => self.loose[i].couple(j, row),
+            BodyUnknowns::Roller(i) => self.loose[i].couple(j, row),
         }
     }
 
@@ -364,19 +369,24 @@ impl<'a> Sum<'a> {
         true
     }
 
-    /// What an eliminated roller leaves with its link.
-    fn pass_on(&mut self, roller: &Loose, inverse: &Matrix3<f64>, right: &Vector3<f64>) {
+    /// Adds the equations of an eliminated roller to those of its link.
+    fn pass_on(
+        &mut self,
+        roller: &FreeRollerEquations,
+        inverse: &Matrix3<f64>,
+        right: &Vector3<f64>,
+    ) {
         let Some(link) = roller.link else { return };
         let place = self.place(link);
         let through = roller.coupling * inverse;
         let block = through * roller.coupling.transpose();
         let force = roller.coupling * right;
         match place {
-            Place::Link(i) => {
+            BodyUnknowns::Link(i) => {
                 self.blocks.diagonal[i] -= block;
                 self.blocks.right[i] -= force;
             }
-            Place::Corner | Place::Roller(_) => {
+            BodyUnknowns::Corner | BodyUnknowns::Roller(_) => {
                 for j in 0..3 {
                     for k in 0..=j {
                         self.blocks.corner[(j, k)] -= block[(j, k)];

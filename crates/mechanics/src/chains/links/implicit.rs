@@ -12,7 +12,7 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::Weights;
 
 use super::equations::Sum;
-use super::held::Prescribed;
+use super::ideal_joints::HingeTarget;
 use super::impulses::MOST_WHEELS;
 use super::{Joining, JointState, Linkage};
 use crate::bodies::GroupBodies;
@@ -23,7 +23,7 @@ use crate::chains::makeup::Makeup;
 const SOFT: f64 = 0.05;
 
 impl Linkage {
-    /// x ← (M + c C + k K)⁻¹ M x of the chain and, behind it, the bodies, at the state that the record was left by.
+    /// x ← (M + c C + k K)⁻¹ M x of the chain and, after it, the bodies, at the state that the record was left by.
     pub(super) fn implicit_step(
         &self,
         bodies: GroupBodies<'_>,
@@ -46,7 +46,7 @@ impl Linkage {
         };
         if let Joining::Hinges(hinges) = &self.joining {
             let share = hinges.share(weights);
-            return self.solve_held(bodies, weights, joint_state, x, Prescribed::Kept(share));
+            return self.solve_held(bodies, weights, joint_state, x, HingeTarget::Kept(share));
         }
         // Columns of the rows are counted when they are compiled, and stand in registers. A drive of more bodies than there is room for is
         // solved by the blocks, whose border grows with it: the same answer to rounding.
@@ -57,8 +57,8 @@ impl Linkage {
         self.eliminate(bodies, weights, joint_state, x)
     }
 
-    /// Whether steps of one solution carry the stiffness of the contacts as inertia: in joints with play. Free rollers between two
-    /// contacts, lighter than what they would have to carry, strike twice as hard then.
+    /// Whether steps of one solution add the contact stiffness to the inertia: in joints with play. Free rollers between two contacts,
+    /// lighter than what they would have to carry, strike twice as hard then.
     pub(crate) fn carries(&self) -> bool {
         matches!(self.joining, Joining::Clearance(_)) && self.free_rollers.is_none()
     }
@@ -90,7 +90,7 @@ impl Linkage {
             stiffness: 0.0,
         };
         let mut change = vec![0.0; count];
-        let asked = Prescribed::Given(towards);
+        let asked = HingeTarget::Given(towards);
         self.solve_held(bodies, none, joint_state, &mut change, asked)
             .then_some(change)
     }

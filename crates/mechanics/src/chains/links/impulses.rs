@@ -22,14 +22,14 @@ use pulp::Simd;
 
 use local::Local;
 use rows::Rows;
-use tridiagonal::{Place, Tridiagonal};
+use tridiagonal::{Tridiagonal, UnknownPlace};
 
 use super::by_link::ByLink;
 use super::reactions::load;
 use super::{Joining, JointState, Linkage};
 use crate::bodies::GroupBodies;
 use crate::chains::makeup::Makeup;
-use crate::contact::Bearing;
+use crate::contact::BoreContact;
 use crate::lanes::Wide;
 
 /// The rows of one step and their factors.
@@ -81,11 +81,11 @@ impl Linkage {
     }
 }
 
-/// What a step is solved with.
+/// Inputs of the solution of one step.
 #[derive(Clone, Copy)]
 pub(super) struct Step<'a> {
     pub(super) linkage: &'a Linkage,
-    pub(super) bearing: &'a Bearing,
+    pub(super) bearing: &'a BoreContact,
     pub(super) bodies: GroupBodies<'a>,
     pub(super) weights: Weights,
     pub(super) joint_state: &'a JointState,
@@ -202,13 +202,13 @@ impl Impulses {
         // Wheels stand in the border, with a negative sign: their unknowns are velocities, not impulses.
         let first = self.joints.first_wheel();
         for (j, &inertia) in bodies.inertias().iter().enumerate() {
-            let place = Place::Border(first + j);
+            let place = UnknownPlace::Border(first + j);
             self.joints.add::<R, B>(place, place, -inertia);
             self.joints
                 .add_right::<R, B>(place, -inertia * b[linkage.coordinates() + j]);
         }
         bodies.each_own(weights, |places, weighted| {
-            let [i, j] = places.map(|place| Place::Border(first + place));
+            let [i, j] = places.map(|place| UnknownPlace::Border(first + place));
             // Both halves are one.
             if places[0] >= places[1] {
                 self.joints.add::<R, B>(i, j, -weighted);

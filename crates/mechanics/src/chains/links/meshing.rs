@@ -7,7 +7,7 @@ use chaindrive_integrate::{Array, Moment, kernel};
 use super::rates::LinkPins;
 use super::{JointState, Linkage, Posture};
 use crate::bodies::{RailContact, Surroundings};
-use crate::contact::{Contacts, Frame, Kept, Rollers, Touch, Wrench, pressing};
+use crate::contact::{Contacts, Frame, MemoryField, Rollers, Touch, Wrench, pressing};
 use crate::energy::Flow;
 use crate::joints::{Element, Partner, rail_mount, wheel_mount};
 use crate::lanes::Wide;
@@ -131,7 +131,10 @@ impl Linkage {
                 let (body, arm) = self.bearer(joint, &joint_state.posture);
                 // Elements look from the surface's material outward through the roller: n = −n_surface.
                 let normal = -Vector::new(faces.normal_x[index], faces.normal_y[index]);
-                let (force, bend) = (touch.state.get(Kept::Force, index), faces.bend[index]);
+                let (force, bend) = (
+                    touch.state.get(MemoryField::Force, index),
+                    faces.bend[index],
+                );
                 let radius = contacts.radius;
                 let mut element = Element {
                     joint: joint % self.joints.len(),

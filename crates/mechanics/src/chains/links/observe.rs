@@ -5,7 +5,7 @@ use chaindrive_integrate::Moment;
 
 use super::{Joining, JointState, Linkage, free_part};
 use crate::chains::links::Work;
-use crate::contact::Kept;
+use crate::contact::MemoryField;
 use crate::energy::{Energy, Store};
 use crate::joints::{JointFindings, Mate, Partner};
 use crate::seam::Observation;
@@ -26,7 +26,9 @@ impl Linkage {
             out.joint_offset_x.push(offset.x);
             out.joint_offset_y.push(offset.y);
             out.joint_depth.push(match &self.joining {
-                Joining::Clearance(_) => (-joints.memory.pins.get(Kept::Gap, index)).max(0.0),
+                Joining::Clearance(_) => {
+                    (-joints.memory.pins.get(MemoryField::Gap, index)).max(0.0)
+                }
                 Joining::Hinges(_) => 0.0,
             });
             out.joint_angle.push(match joint.pair {
@@ -70,7 +72,7 @@ impl Linkage {
             let (offset, depth) = body.map_or((nothing, f64::NAN), |body| {
                 let bush = self.part(joint.carrier, at, &work.joint_state.posture);
                 let offset = bush.place - free_part(body, at).place;
-                let gap = work.joints.memory.bushes.get(Kept::Gap, index);
+                let gap = work.joints.memory.bushes.get(MemoryField::Gap, index);
                 (offset, (-gap).max(0.0))
             });
             out.bush_offset_x.push(offset.x);

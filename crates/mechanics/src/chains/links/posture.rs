@@ -1,4 +1,4 @@
-//! Where the links and rollers of a linkage are, and how they move.
+//! Positions and velocities of the links and rollers of a linkage.
 
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Array, Moment, kernel};
@@ -12,15 +12,15 @@ use crate::seam::Pose;
 
 /// Places and velocities that follow from the coordinates.
 ///
-/// Link i lies between the joints i and i + 1; behind the last link of a closed chain comes joint 0 again, once more
+/// Link i lies between the joints i and i + 1; after the last link of a closed chain comes joint 0 again, once more
 /// under the number after the last.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Posture {
     /// At every joint the end of the link before it.
     pub(crate) before: Sides,
-    /// At every joint the end of the link behind it.
+    /// At every joint the end of the link after it.
     pub(crate) after: Sides,
-    /// Centres of the circles that run on the teeth, (stride,), and their velocities; behind the last
+    /// Centres of the circles that run on the teeth, (stride,), and their velocities; after the last
     /// roller of a closed chain stand copies of the first ones.
     pub(crate) x: Array,
     pub(crate) y: Array,
@@ -35,7 +35,7 @@ pub(crate) struct Posture {
 pub(crate) struct Shapes {
     /// Both joint ends from the centre of mass, in the frame of the link \[m\].
     arms: [[Array; 2]; 2],
-    /// Inverse mass \[1/kg\] and inertia \[1/(kg m²)\] of link i behind place i + 1; before the first link of a
+    /// Inverse mass \[1/kg\] and inertia \[1/(kg m²)\] of link i after place i + 1; before the first link of a
     /// closed chain comes the last, and beside those of an open one nothing that moves.
     pub(crate) mobility: Array,
     pub(crate) turning: Array,
@@ -141,7 +141,7 @@ impl Posture {
         [&self.before, &self.after]
     }
 
-    /// Where the circles are that run on the teeth.
+    /// Pose of the circles that run on the teeth.
     pub(crate) fn pose(&self) -> Pose<'_> {
         Pose {
             x: &self.x,
@@ -189,7 +189,7 @@ impl Linkage {
         self.pose_rollers(at, posture);
     }
 
-    /// What is beside the first and the last link.
+    /// Sets the neighbours of the first and the last link.
     fn pose_ends(&self, at: Moment<'_>, posture: &mut Posture) {
         let last = self.series.links;
         if self.series.is_closed() {
@@ -233,7 +233,7 @@ impl Linkage {
                 };
             }
             if !self.series.is_closed() {
-                // Behind a strand stand still points one pitch apart.
+                // After a strand stand still points one pitch apart.
                 posture.x[joint] = posture.x[joint - 1] + self.series.pitch;
                 posture.y[joint] = posture.y[joint - 1];
             }

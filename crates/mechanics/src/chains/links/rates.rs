@@ -7,7 +7,7 @@ use pulp::Simd;
 use super::{Joining, JointState, Linkage, Posture};
 use crate::bodies::Surroundings;
 use crate::chains::links::Work;
-use crate::contact::{Drawn, OfPins, PlatePins};
+use crate::contact::{OfPins, PinAccelerations, PlatePins};
 use crate::joints::{Element, Joints, Partner, cross, turned};
 use crate::lanes::{Lane, Wide};
 use crate::seam::Rates;
@@ -37,7 +37,7 @@ impl Linkage {
         let joint_state = &mut work.joint_state;
         let mut sums = std::mem::take(&mut joint_state.sums);
         sums.clear();
-        sums.resize(self.bodies.len(), [Packed::default(); 3]);
+        sums.resize(self.bodies.len(), [SymmetricMatrix::default(); 3]);
         self.add_joints(joint_state, &mut sums);
         for element in &joint_state.elements {
             let share = match element.b {
@@ -168,7 +168,7 @@ impl Linkage {
     }
 
     /// Pins in bushes, straight from their arrays.
-    fn add_joints(&self, joint_state: &JointState, sums: &mut [[Packed; 3]]) {
+    fn add_joints(&self, joint_state: &JointState, sums: &mut [[SymmetricMatrix; 3]]) {
         let Joining::Clearance(bearing) = &self.joining else {
             return;
         };
@@ -231,11 +231,11 @@ impl Linkage {
 }
 
 /// A symmetric matrix of three rows: diagonal, then entries (1, 0), (2, 0), (2, 1).
-pub(super) type Packed = [f64; 6];
+pub(super) type SymmetricMatrix = [f64; 6];
 
 /// S += w r rᵀ
 #[inline]
-fn add_square(sum: &mut Packed, row: Vector3<f64>, weight: f64) {
+fn add_square(sum: &mut SymmetricMatrix, row: Vector3<f64>, weight: f64) {
     let scaled = row * weight;
     for k in 0..3 {
         sum[k] += row[k] * scaled[k];
@@ -250,7 +250,7 @@ fn add_square(sum: &mut Packed, row: Vector3<f64>, weight: f64) {
 /// ```text
 /// m = tr/3,  p² = |S − m|²/6:   λ ≤ m + 2 p
 /// ```
-fn largest(matrix: &Packed) -> f64 {
+fn largest(matrix: &SymmetricMatrix) -> f64 {
     let [x, y, z, yx, zx, zy] = matrix;
     let mean = (x + y + z) / 3.0;
     let off = yx * yx + zx * zx + zy * zy;
@@ -304,7 +304,7 @@ impl PlatePins for LinkPins<'_> {
 
     /// A link that is struck at its other end moves at once.
     #[inline(always)]
-    fn drawn<S: Simd>(&self, _w: Wide<S>, _link: usize) -> Option<Drawn<S>> {
+    fn drawn<S: Simd>(&self, _w: Wide<S>, _link: usize) -> Option<PinAccelerations<S>> {
         None
     }
 

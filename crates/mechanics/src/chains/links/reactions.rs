@@ -39,11 +39,11 @@ pub(crate) struct Reactions {
     sound: bool,
     /// Inverses of the blocks of A, as [`ByLink`] has its numbers: entries (0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2).
     inverse: [Array; 6],
-    /// r, then λ, by joint; behind the last joint of a closed chain comes the first once more.
+    /// r, then λ, by joint; after the last joint of a closed chain comes the first once more.
     pub(super) right: [Array; 2],
 }
 
-/// What A is made of.
+/// Inertia that A is made of.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Inertia {
     /// Masses and inertias of the links.
@@ -54,7 +54,7 @@ pub(super) enum Inertia {
 
 /// A⁻¹ of a lane of links.
 #[derive(Clone, Copy)]
-enum Yielding<S: Simd> {
+enum InverseInertia<S: Simd> {
     /// 1/m and 1/I.
     Free([Lane<S>; 2]),
     Held([Lane<S>; 6]),
@@ -272,13 +272,13 @@ impl Reactions {
             // How the links before and after the joints give way: by their masses, or by what an implicit step has made of them.
             let (before, after) = if FREE {
                 (
-                    Yielding::free(w, &linkage.shapes, start),
-                    Yielding::free(w, &linkage.shapes, start + 1),
+                    InverseInertia::free(w, &linkage.shapes, start),
+                    InverseInertia::free(w, &linkage.shapes, start + 1),
                 )
             } else {
                 (
-                    Yielding::Held(blocks(w, &self.inverse, start)),
-                    Yielding::Held(blocks(w, &self.inverse, start + 1)),
+                    InverseInertia::Held(blocks(w, &self.inverse, start)),
+                    InverseInertia::Held(blocks(w, &self.inverse, start + 1)),
                 )
             };
             // At a joint both links give way; the link after it hands on what the next joint does.
@@ -300,7 +300,7 @@ impl Reactions {
     }
 }
 
-impl<S: Simd> Yielding<S> {
+impl<S: Simd> InverseInertia<S> {
     #[inline(always)]
     fn free(w: Wide<S>, shapes: &Shapes, place: usize) -> Self {
         Self::Free([
@@ -309,7 +309,8 @@ impl<S: Simd> Yielding<S> {
         ])
     }
 
-    /// How a place on a link gives way to a force at another, both from the centre of mass: entries (0, 0), (0, 1), (1, 0), (1, 1).
+    /// Velocity of a place on a link under an impulse at another, both relative to the centre of mass: entries (0, 0), (0, 1), (1, 0), (1,
+    /// 1).
     #[inline(always)]
     fn between(&self, [px, py]: [Lane<S>; 2], [fx, fy]: [Lane<S>; 2]) -> [Lane<S>; 4] {
         match *self {

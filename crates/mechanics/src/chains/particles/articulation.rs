@@ -35,7 +35,7 @@ pub(in crate::chains) fn act<S: Simd>(
     let behind = [rollers.ax[count], rollers.ay[count]];
     pass_on(w, &found.torque, &turning.across, rollers);
     if links.closed {
-        // The roller behind the last link is the first one again.
+        // The roller after the last link is the first one again.
         rollers.ax[0] += rollers.ax[count] - behind[0];
         rollers.ay[0] += rollers.ay[count] - behind[1];
     }
@@ -77,7 +77,7 @@ pub(in crate::chains) fn torques<S: Simd>(
     };
     let power = joints.resist(w, t, found, &neighbours);
     if links.closed {
-        // Behind the last link is the first joint again.
+        // After the last link is the first joint again.
         found.torque[count] = found.torque[0];
     }
     power

@@ -37,7 +37,7 @@ impl Particles {
     }
 }
 
-/// Masses behind the last roller: those of the originals, or none.
+/// Masses after the last roller: those of the originals, or none.
 fn pad(values: &mut Vec<f64>, stride: usize, closed: bool) {
     let count = values.len();
     for i in count..stride {
@@ -54,7 +54,7 @@ fn coordinates(chain: &Chain, places: &[Point], stride: usize) -> Vec<f64> {
         } else if chain.is_closed() {
             places[i % count]
         } else {
-            // Behind a strand stand still points one pitch apart, so that no length is zero.
+            // After a strand stand still points one pitch apart, so that no length is zero.
             places[count - 1] + Vector::x() * chain.pitch * (i + 1 - count) as f64
         };
         q[i] = place.x;

@@ -18,7 +18,7 @@ use crate::Chain;
 use crate::contact::Rollers;
 use crate::lanes::{Lane, Wide};
 
-/// Drag per length of every link \[N s/m²\], whole lanes; none behind the last.
+/// Drag per length of every link \[N s/m²\], whole lanes; none after the last.
 #[derive(Clone, Debug)]
 pub(super) struct Drag(Array);
 
@@ -72,7 +72,7 @@ impl Drag {
             before = push;
         }
         if links.closed {
-            // The roller behind the last link is the first one again.
+            // The roller after the last link is the first one again.
             rollers.ax[0] += rollers.ax[count] - behind[0];
             rollers.ay[0] += rollers.ay[count] - behind[1];
         }

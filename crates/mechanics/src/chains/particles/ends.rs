@@ -4,7 +4,7 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::Moment;
 
 use super::{Particles, Turning};
-use crate::chains::held_end::HeldEnd;
+use crate::chains::strand_ends::HeldEnd;
 use crate::energy::Flow;
 use crate::joints::Resistance;
 use crate::kinematics::Kinematics;

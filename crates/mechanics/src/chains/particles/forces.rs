@@ -9,7 +9,7 @@ use super::{Particles, articulation};
 use crate::bodies::{RailContact, Surroundings};
 use crate::chains::kernel::Kernel;
 use crate::chains::particles::Work;
-use crate::contact::{Drawn, OfPins, PlatePins, Rollers, pressing};
+use crate::contact::{OfPins, PinAccelerations, PlatePins, Rollers, pressing};
 use crate::energy::Flow;
 use crate::joints::Resistance;
 use crate::lanes::Wide;
@@ -43,7 +43,7 @@ impl Particles {
     ) {
         let n = self.series.stride;
         if self.links.closed {
-            // A ghost behind the first turn copies one of the turn before.
+            // A ghost after the first turn copies one of the turn before.
             for ghost in self.series.rollers..n {
                 a[ghost] = a[ghost - self.series.rollers];
                 a[n + ghost] = a[n + ghost - self.series.rollers];
@@ -72,7 +72,7 @@ impl Particles {
         }
         touch_bodies(w, around, t, rollers, rates, loads);
         if links.closed {
-            // The roller behind the last link is the first one again, and has to be where plates push it.
+            // The roller after the last link is the first one again, and has to be where plates push it.
             let count = links.count;
             let before = [rollers.ax[0], rollers.ay[0]];
             [rollers.ax[count], rollers.ay[count]] = before;
@@ -173,8 +173,8 @@ impl PlatePins for Rollers<'_> {
     }
 
     #[inline(always)]
-    fn drawn<S: Simd>(&self, w: Wide<S>, link: usize) -> Option<Drawn<S>> {
-        Some(Drawn {
+    fn drawn<S: Simd>(&self, w: Wide<S>, link: usize) -> Option<PinAccelerations<S>> {
+        Some(PinAccelerations {
             by: between(w, [self.ax, self.ay], link),
             inverse_masses: [
                 w.load(self.inverse_mass, link),
@@ -194,7 +194,7 @@ impl PlatePins for Rollers<'_> {
     }
 }
 
-/// What rollers have at both ends of a lane of links.
+/// Values of the rollers at both ends of a lane of links.
 #[inline(always)]
 fn between<S: Simd>(w: Wide<S>, [x, y]: [&[f64]; 2], link: usize) -> OfPins<S> {
     [

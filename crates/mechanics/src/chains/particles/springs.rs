@@ -40,7 +40,7 @@ impl<S: Simd> Pulls<S> for Springs<'_, S> {
     }
 }
 
-/// How links turn and pull: work space, filled anew by every evaluation.
+/// Directions and tensions of the links: work space, filled anew by every evaluation.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turning {
     /// Turning of the links \[rad/s\], from entry [`LANES`] on.
@@ -85,7 +85,7 @@ impl Links {
         }
     }
 
-    /// Number of entries that roller arrays need: whole lanes of links, and the roller behind them.
+    /// Number of entries that roller arrays need: whole lanes of links, and the roller after them.
     pub(crate) fn stride(&self) -> usize {
         self.rest.len() + LANES
     }
@@ -179,7 +179,7 @@ impl Links {
             before = pull;
         }
         if self.closed {
-            // The roller behind the last link is the first one again, and what pulls there is missing here.
+            // The roller after the last link is the first one again, and what pulls there is missing here.
             rollers.ax[0] += rollers.ax[self.count] - gravity[0];
             rollers.ay[0] += rollers.ay[self.count] - gravity[1];
         }

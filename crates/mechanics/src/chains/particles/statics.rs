@@ -76,7 +76,7 @@ impl Statics for Particles {
         unknowns
     }
 
-    /// A roller; the one behind the last of a closed chain is the first.
+    /// A roller; the one after the last of a closed chain is the first.
     fn roller_moving(&self, q: &[f64], roller: usize) -> Moving {
         let roller = roller % self.series.rollers;
         Moving::free(self.place(q, roller), [roller, self.series.stride + roller])
@@ -136,7 +136,7 @@ impl Statics for Particles {
         rest / nominal
     }
 
-    /// Moves every roller that is not held; copies behind the last one follow.
+    /// Moves every roller that is not held; copies after the last one follow.
     fn nudge(&self, q: &mut [f64], mut shift: impl FnMut() -> f64) {
         let n = self.series.stride;
         for i in 0..self.series.rollers {
@@ -149,7 +149,7 @@ impl Statics for Particles {
         self.copy_ghosts(q);
     }
 
-    /// Gives the copies behind the last roller of a closed chain the values of their originals.
+    /// Gives the copies after the last roller of a closed chain the values of their originals.
     fn copy_ghosts(&self, values: &mut [f64]) {
         if self.links.closed {
             let n = self.series.stride;

@@ -5,11 +5,11 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Array, Moment};
 
 use super::{AFTER, BEFORE, PointJoints, Points, ROLLERS};
-use crate::chains::LaidAs;
-use crate::chains::laid::length_through;
+use crate::chains::ChainAsLaid;
+use crate::chains::as_laid::length_through;
 use crate::chains::makeup::{Makeup, Statics};
 use crate::chains::particles::Particles;
-use crate::contact::Bearing;
+use crate::contact::BoreContact;
 use crate::joints::JointMemory;
 use crate::lanes::padded;
 use crate::surface::Surface;
@@ -34,7 +34,7 @@ impl Points {
     /// ```
     pub(in crate::chains) fn replace(
         particles: &Particles,
-        laid: &LaidAs<'_>,
+        laid: &ChainAsLaid<'_>,
         points: &PointJoints,
         at: Moment<'_>,
     ) -> (Self, [Vec<f64>; 2]) {
@@ -45,9 +45,9 @@ impl Points {
             ..*surface
         };
         let joint = &points.joint;
-        let pin = Bearing::new(&smooth(&joint.surface), joint.bore_radius, joint.pin_radius);
+        let pin = BoreContact::new(&smooth(&joint.surface), joint.bore_radius, joint.pin_radius);
         let roller = &points.roller;
-        let bush = Bearing::new(
+        let bush = BoreContact::new(
             &smooth(&roller.surface),
             roller.bore_radius,
             roller.bush_radius,
@@ -118,9 +118,9 @@ impl Points {
         (chain, [q, v])
     }
 
-    /// Where the points stand: bushes pressed into rollers that are pressed on something, rollers hanging on the others, and every link
-    /// with the tension that it was laid with.
-    fn seat(&mut self, particles: &Particles, laid: &LaidAs<'_>, at: Moment<'_>) -> Vec<f64> {
+    /// Places the points: bushes pressed into rollers that are pressed on something, other rollers hanging, and every link with the tension
+    /// that it was laid with.
+    fn seat(&mut self, particles: &Particles, laid: &ChainAsLaid<'_>, at: Moment<'_>) -> Vec<f64> {
         let count = self.series.rollers;
         let place = |i: usize| particles.place(at.q, i % count);
         let direction = |i: usize| (place(i + 1) - place(i)).normalize();

@@ -29,7 +29,7 @@ use crate::seam::Loads;
 
 /// One direction of a closed contact between a roller and a wheel or rail.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct Touching {
+pub(super) struct ClosedContact {
     joint: usize,
     /// Number of the wheel or rail among those of the chain.
     pub(super) mount: usize,
@@ -47,14 +47,14 @@ pub(super) struct Touching {
 
 /// Σ D e eᵀ of every roller, and −Σ D e (Σ c_j x_j), whole lanes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Pressed {
+pub(super) struct RollerBlocks {
     matrix: [Array; 3],
     right: [Array; 2],
 }
 
 /// The equations of the bodies by themselves, kept for the next step.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Own {
+pub(super) struct BodyEquations {
     matrix: DMatrix<f64>,
     right: DVector<f64>,
 }
@@ -115,7 +115,7 @@ impl Points {
                     let arm =
                         Point::new(at.q[joint], at.q[self.series.stride + joint]) - frame.origin;
                     let along = Vector::new(faces.normal_x[index], faces.normal_y[index]);
-                    let normal = Touching {
+                    let normal = ClosedContact {
                         joint,
                         mount: number,
                         along,
@@ -128,7 +128,7 @@ impl Points {
                     found.touching.push(normal);
                     if rubs {
                         let across = turned(along);
-                        found.touching.push(Touching {
+                        found.touching.push(ClosedContact {
                             along: across,
                             stiffness: 0.0,
                             // A secant: a step cannot carry the slip beyond zero.
@@ -142,7 +142,7 @@ impl Points {
         }
     }
 
-    /// x ← (M + c C + k K)⁻¹ M x of the chain and, behind it, the bodies, at the state that the record was left by.
+    /// x ← (M + c C + k K)⁻¹ M x of the chain and, after it, the bodies, at the state that the record was left by.
     pub(super) fn implicit_step(
         &self,
         bodies: GroupBodies<'_>,
@@ -182,7 +182,7 @@ impl Points {
     }
 }
 
-impl Own {
+impl BodyEquations {
     /// (M + c C + k K) x = M b of the bodies by themselves, in the place of b; false if a pivot vanishes.
     fn solve(&mut self, bodies: GroupBodies<'_>, weights: Weights, x: &mut [f64]) -> bool {
         let inertias = bodies.inertias();
@@ -236,10 +236,10 @@ fn shares((shifts, turn): &([Vector; 2], f64), along: Vector, arm: Vector, lever
     ]
 }
 
-impl Pressed {
+impl RollerBlocks {
     fn collect(
         &mut self,
-        touching: &mut [Touching],
+        touching: &mut [ClosedContact],
         mounts: &[[usize; 3]],
         weights: Weights,
         bodies: &[f64],

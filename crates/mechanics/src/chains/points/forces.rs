@@ -3,7 +3,7 @@
 use chaindrive_integrate::Moment;
 use pulp::Simd;
 
-use super::{AFTER, BEFORE, Ends, Held, Points, ROLLERS};
+use super::{AFTER, BEFORE, Ends, JointContacts, Points, ROLLERS};
 use crate::bodies::{RailContact, Surroundings};
 use crate::chains::kernel::Kernel;
 use crate::chains::makeup::Statics;
@@ -11,7 +11,7 @@ use crate::chains::particles::articulation;
 use crate::chains::particles::forces::{plate_forces, touch_bodies};
 use crate::chains::particles::springs::Turning;
 use crate::chains::points::Work;
-use crate::contact::{Apart, Grip, LaneTally, MemoryLanes, Rollers, Tally};
+use crate::contact::{Grip, LaneTally, MemoryLanes, RelativeMotion, Rollers, Tally};
 use crate::energy::Flow;
 use crate::lanes::{LANES, Lane, Wide, padded};
 use crate::seam::Loads;
@@ -120,7 +120,7 @@ impl Points {
             by.set(i, gy - pull[1].after(before[1]) * im_b);
             before = pull;
         }
-        // The joint behind the last link is the first one.
+        // The joint after the last link is the first one.
         for axis in [2 * BEFORE, 2 * BEFORE + 1] {
             let column = &mut a[axis * self.series.stride..(axis + 1) * self.series.stride];
             column[0] = column[links.count];
@@ -213,7 +213,7 @@ impl Points {
             let (after_x, after_y) = (ax.get(i), ay.get(i));
             let (after_vx, after_vy) = (avx.get(i), avy.get(i));
             // Pin in bush: the offset of the end after the joint from the end before it, whichever has the pin.
-            let apart = Apart {
+            let apart = RelativeMotion {
                 offset: [after_x - before_x, after_y - before_y],
                 rate: [after_vx - before_vx, after_vy - before_vy],
                 spin: [zero, zero],
@@ -228,7 +228,7 @@ impl Points {
 
             // Bush in roller: the bush belongs to the inner link, on this or that side of the joint.
             let is_after = bush_after.get(i).greater(half);
-            let apart = Apart {
+            let apart = RelativeMotion {
                 offset: [
                     is_after.select(after_x, before_x) - rx.get(i),
                     is_after.select(after_y, before_y) - ry.get(i),
@@ -283,7 +283,7 @@ impl Points {
         let Surroundings {
             bodies, contacts, ..
         } = around;
-        let bear = |shallow: f64, held: &Held| [held.stiffest.max(shallow), held.damped];
+        let bear = |shallow: f64, held: &JointContacts| [held.stiffest.max(shallow), held.damped];
         let [pin, bush] = [
             bear(self.shallow[0], &found.pins),
             bear(self.shallow[1], &found.bushes),
@@ -389,7 +389,7 @@ struct Grips<'a, S: Simd> {
 
 impl<'a, S: Simd> Grips<'a, S> {
     #[inline(always)]
-    fn new(w: Wide<S>, held: &'a mut Held, count: usize) -> Self {
+    fn new(w: Wide<S>, held: &'a mut JointContacts, count: usize) -> Self {
         held.resize(count);
         Self {
             normal: [
@@ -465,7 +465,7 @@ impl Kernel for Points {
             half_step: 0.0,
         };
         touch_bodies(w, around, at.t, &mut rollers, rates, loads);
-        // The joint behind the last link is the first one again, and has to be where plates push it.
+        // The joint after the last link is the first one again, and has to be where plates push it.
         let behind = [2 * BEFORE, 2 * BEFORE + 1].map(|column| column * n);
         let before = behind.map(|column| a[column]);
         for (column, before) in behind.into_iter().zip(before) {

@@ -5,7 +5,7 @@ use chaindrive_integrate::Moment;
 
 use super::{AFTER, BEFORE, Points, ROLLERS};
 use crate::chains::points::Work;
-use crate::contact::Kept;
+use crate::contact::MemoryField;
 use crate::energy::{Energy, Store};
 use crate::joints::JointFindings;
 use crate::seam::{Observation, Pose};
@@ -88,7 +88,7 @@ impl Points {
         let memory = &found.memory;
         let bearings = [(&self.pin, &memory.pins), (&self.bush, &memory.bushes)];
         for (bearing, memory) in bearings {
-            let gaps = memory.each(Kept::Gap).take(self.series.rollers);
+            let gaps = memory.each(MemoryField::Gap).take(self.series.rollers);
             let stored = gaps.filter(|gap| *gap < 0.0);
             let stored = stored.map(|gap| bearing.energy(gap));
             out.stores[Store::Joints as usize] += stored.sum::<f64>();

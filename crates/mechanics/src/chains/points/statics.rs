@@ -129,10 +129,10 @@ impl Statics for Points {
         self.copy_ghosts(q);
     }
 
-    /// Gives the copies behind the last joint the values of their originals.
+    /// Gives the copies after the last joint the values of their originals.
     fn copy_ghosts(&self, values: &mut [f64]) {
         for block in values[..self.coordinates()].chunks_exact_mut(self.series.stride) {
-            // A copy behind the first turn is one of the turn before.
+            // A copy after the first turn is one of the turn before.
             for ghost in self.series.rollers..block.len() {
                 block[ghost] = block[ghost - self.series.rollers];
             }

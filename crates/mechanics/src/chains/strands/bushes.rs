@@ -16,7 +16,7 @@ use crate::contact::{Contacts, Touch};
 use crate::lanes::LANES;
 use crate::seam::Loads;
 
-/// The inner link of every joint, copies behind the last one included; the only link of the joint where the chain ends in an outer one.
+/// The inner link of every joint, copies after the last one included; the only link of the joint where the chain ends in an outer one.
 pub(super) fn bearers(model: &BushStrands, chain: &Particles) -> Vec<usize> {
     let (links, joints) = (chain.series.links, chain.series.rollers);
     let bearer = |joint: usize| {

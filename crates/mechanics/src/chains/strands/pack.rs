@@ -28,11 +28,11 @@ struct Plates {
 #[derive(Clone, Debug)]
 pub(super) struct Pack {
     strands: Vec<Plates>,
-    /// How much shorter than a strand a link is when the strand begins to push \[m\].
+    /// Shortening of a link at which its strand begins to push \[m\].
     play: Array,
 }
 
-/// How far plates are stretched, negative where they are pushed \[m\].
+/// Stretch of the plates, negative where they are compressed \[m\].
 fn stretched(longer: f64, play: f64) -> f64 {
     longer.max(0.0) + (longer + play).min(0.0)
 }

@@ -4,7 +4,7 @@ use chaindrive_contact::{Dissipation, Elastic, Film, Friction, Law, elastic::Pow
 use chaindrive_geometry::{Point, Vector};
 
 use super::{RADIUS, Roller, flat_rail};
-use crate::contact::Kept;
+use crate::contact::MemoryField;
 use crate::contact::film::LaneFilm;
 use crate::surface::Surface;
 
@@ -81,7 +81,7 @@ fn fall(film: Film, step: f64) -> Impact {
         force = roller.force(t, at, Vector::new(0.0, velocity)).y;
         velocity += 0.5 * step * force / MASS;
         lost += 0.5 * step * (losing + roller.losing);
-        let squeezed = roller.contacts.memory.state.get(Kept::Squeezed, 0);
+        let squeezed = roller.contacts.memory.state.get(MemoryField::Squeezed, 0);
         impact.peak = impact.peak.max(force);
         impact.least_film = impact.least_film.min(film.thickness - squeezed);
         let all = 0.5 * MASS * velocity * velocity + roller.stored() + lost;
@@ -250,7 +250,7 @@ fn nothing_jumps_at_the_start() {
             (force - dry).abs() <= 1e-9 * dry + 1e-9,
             "{depth}: {force} {dry}"
         );
-        let squeezed = found.contacts.memory.state.get(Kept::Squeezed, 0);
+        let squeezed = found.contacts.memory.state.get(MemoryField::Squeezed, 0);
         let expected = (film.thickness + depth).clamp(0.0, film.thickness);
         assert!((squeezed - expected).abs() < 1e-15, "{depth}: {squeezed}");
         let again = found.force(0.0, at, Vector::zeros()).y;
@@ -282,7 +282,7 @@ fn oil_comes_back_between_parted_surfaces() {
             let again = roller.force(t, place(20e-6 - 4e-18), Vector::zeros()).y;
             assert!(again.abs() <= 0.0 && roller.closed() == 0, "{again}");
         }
-        let squeezed = roller.contacts.memory.state.get(Kept::Squeezed, 0);
+        let squeezed = roller.contacts.memory.state.get(MemoryField::Squeezed, 0);
         // From the whole film to the 10 µm that the gap leaves: e = 10 + 20 e^(−t/τ) µm
         let left = if refill_time > 0.0 {
             (-t / refill_time).exp()

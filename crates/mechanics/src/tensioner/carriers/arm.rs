@@ -4,7 +4,7 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_quantities::{Inertia, JsonSchema, Length, Ratio};
 use serde::{Deserialize, Serialize};
 
-use super::{Carried, Carries, Extension, require_unit};
+use super::{CarriedBodies, CarrierModel, Extension, require_unit};
 use crate::DriveError;
 
 /// An arm about a pivot, pushed by a plunger or by a torque.
@@ -59,13 +59,13 @@ fn across(r: Vector) -> Vector {
     Vector::new(-r.y, r.x)
 }
 
-impl Carries for Arm {
+impl CarrierModel for Arm {
     fn name(&self) -> &'static str {
         "arm"
     }
 
     /// From the pivot to all that it carries, and from there to the plunger.
-    fn lines(&self, carried: &Carried<'_>, _pitch: f64) -> Vec<[Point; 2]> {
+    fn lines(&self, carried: &CarriedBodies<'_>, _pitch: f64) -> Vec<[Point; 2]> {
         let ends = |from: Point| {
             let faces = carried.faces.iter();
             let feet = faces.filter_map(move |face| face.nearest(from, f64::INFINITY));

@@ -4,7 +4,7 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_quantities::{JsonSchema, Mass, Ratio};
 use serde::{Deserialize, Serialize};
 
-use super::{Carried, Carries, Extension, Weight, require_unit};
+use super::{CarriedBodies, CarrierModel, Extension, Weight, require_unit};
 use crate::DriveError;
 
 /// Length of its drawn rod in pitches.
@@ -31,13 +31,13 @@ pub struct Slider {
     pub mass: Option<f64>,
 }
 
-impl Carries for Slider {
+impl CarrierModel for Slider {
     fn name(&self) -> &'static str {
         "slider"
     }
 
     /// A rod behind everything that it pushes, seen beyond the tips of a sprocket.
-    fn lines(&self, carried: &Carried<'_>, pitch: f64) -> Vec<[Point; 2]> {
+    fn lines(&self, carried: &CarriedBodies<'_>, pitch: f64) -> Vec<[Point; 2]> {
         let middles = carried.faces.iter();
         let middles = middles.map(|face| (face.point_at(0.5 * face.length()), 0.0));
         let pushed = carried.sprockets.iter().copied().chain(middles);

@@ -15,7 +15,7 @@ use crate::scene::schema;
 use chaindrive_quantities::Length;
 
 /// A dimension that must be known: its key, its value, and what it is called.
-type Needed = (&'static str, Option<f64>, &'static str);
+type RequiredDimension = (&'static str, Option<f64>, &'static str);
 
 impl Parts {
     /// All parts behind the teeth of a sprocket that yield, with the steel of a rim of some depth below the gaps. None where a dimension is
@@ -78,7 +78,7 @@ impl Parts {
     /// Values of the chain; those that are missing are refused.
     fn needed<const N: usize>(
         &self,
-        needed: [Needed; N],
+        needed: [RequiredDimension; N],
         findings: &mut Findings<'_>,
     ) -> Option<[f64; N]> {
         for (key, _, what) in needed.iter().filter(|(_, value, _)| value.is_none()) {
@@ -270,7 +270,7 @@ const ROLLER: Dimension = Dimension {
 };
 
 impl Dimension {
-    fn of(self, value: Option<impl Into<f64>>) -> Needed {
+    fn of(self, value: Option<impl Into<f64>>) -> RequiredDimension {
         (self.key, value.map(Into::into), self.what)
     }
 }

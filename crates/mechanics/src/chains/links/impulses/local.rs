@@ -27,7 +27,7 @@ struct Line {
     border: [(usize, f64); 3],
     /// J b over the chain's bodies.
     right: f64,
-    /// What the row weighs.
+    /// Weight of the row.
     weight: f64,
 }
 
@@ -51,9 +51,9 @@ pub(super) struct Local {
     /// First line of every link, and one more entry.
     starts: Vec<usize>,
     order: Vec<usize>,
-    /// L and the inverse of D of one link behind those of another, whole squares.
+    /// L and the inverse of D of one link after those of the one before, whole squares.
     factors: Vec<f64>,
-    /// Couplings of every line with what is around it, eliminated as far as the factors are, right-hand sides behind.
+    /// Couplings of every line with what is around it, eliminated as far as the factors are, right-hand sides after.
     around: Vec<f64>,
 }
 

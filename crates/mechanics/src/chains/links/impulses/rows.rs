@@ -8,7 +8,7 @@ use pulp::Simd;
 use crate::chains::links::by_link::ByLink;
 use crate::chains::links::reactions::{arms, load};
 use crate::chains::links::{JointState, Linkage};
-use crate::contact::Bearing;
+use crate::contact::BoreContact;
 use crate::lanes::{Lane, Wide};
 
 /// One row a joint, whole lanes; all zero where there is no contact.
@@ -20,7 +20,7 @@ pub(super) struct Rows {
     y: Array,
     turn_before: Array,
     turn_after: Array,
-    /// What the row weighs; zero where there is no contact.
+    /// Weight of the row; zero where there is no contact.
     pub(super) weight: Array,
 }
 
@@ -115,7 +115,7 @@ impl Rows {
         &mut self,
         w: Wide<S>,
         linkage: &Linkage,
-        bearing: &Bearing,
+        bearing: &BoreContact,
         joint_state: &JointState,
         known: &ByLink,
         weights: Weights,

@@ -9,9 +9,9 @@ use crate::chains::links::Linkage;
 use crate::chains::links::reactions::Sections;
 use crate::lanes::{LANES, Wide, padded};
 
-/// Where an unknown stands.
+/// Position of an unknown in the equations.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Place {
+pub(super) enum UnknownPlace {
     /// Joint, and row of it.
     Row(usize, usize),
     Border(usize),
@@ -30,7 +30,7 @@ pub(super) struct Tridiagonal {
     /// Entries of the blocks (joint + 1, joint): row p there, column o here; after the elimination of L.
     coupling: [Array; 4],
     right: [Array; 2],
-    /// B columns for every row: the border, and the right-hand side behind it.
+    /// B columns for every row: the border, and the right-hand side after it.
     beside: Array,
     /// The border's own equations in the same columns.
     corner: Array,
@@ -41,7 +41,7 @@ pub(super) struct Tridiagonal {
     count: usize,
     /// The unknowns of the border, once they are found.
     edge: Array,
-    /// The unknowns of the joints, the first one of a closed chain once more behind the last.
+    /// The unknowns of the joints, the first one of a closed chain once more after the last.
     found: [Array; 2],
     sections: Sections,
     /// Solutions of the sections for every column beside them.
@@ -134,32 +134,36 @@ impl Tridiagonal {
         }
         let last = self.count;
         for p in 0..R {
-            self.add_right::<R, B>(Place::Border(p), self.right[p][last]);
+            self.add_right::<R, B>(UnknownPlace::Border(p), self.right[p][last]);
             for o in 0..R {
                 if o <= p {
                     let value = self.own[entry(p, o)][last];
-                    self.add::<R, B>(Place::Border(p), Place::Border(o), value);
+                    self.add::<R, B>(UnknownPlace::Border(p), UnknownPlace::Border(o), value);
                 }
                 // From the last joint back to the one before it, and on to the first.
                 let value = self.coupling[entry(p, o)][last - 1];
-                self.add::<R, B>(Place::Border(p), Place::Row(last - 1, o), value);
+                self.add::<R, B>(
+                    UnknownPlace::Border(p),
+                    UnknownPlace::Row(last - 1, o),
+                    value,
+                );
                 let value = self.coupling[entry(p, o)][last];
-                self.add::<R, B>(Place::Row(0, p), Place::Border(o), value);
+                self.add::<R, B>(UnknownPlace::Row(0, p), UnknownPlace::Border(o), value);
             }
         }
     }
 
     /// Where a column stands that is counted from the rows of two joints on, over the wheels.
     #[inline(always)]
-    fn place<const R: usize>(&self, joints: [usize; 2], column: usize) -> Place {
+    fn place<const R: usize>(&self, joints: [usize; 2], column: usize) -> UnknownPlace {
         if column >= 2 * R {
-            return Place::Border(self.held + column - 2 * R);
+            return UnknownPlace::Border(self.held + column - 2 * R);
         }
         let joint = joints[column / R];
         if joint < self.count {
-            Place::Row(joint, column % R)
+            UnknownPlace::Row(joint, column % R)
         } else {
-            Place::Border(column % R)
+            UnknownPlace::Border(column % R)
         }
     }
 
@@ -233,9 +237,14 @@ impl Tridiagonal {
 
     /// Adds to an entry and to its mirror image.
     #[inline(always)]
-    pub(super) fn add<const R: usize, const B: usize>(&mut self, a: Place, b: Place, value: f64) {
+    pub(super) fn add<const R: usize, const B: usize>(
+        &mut self,
+        a: UnknownPlace,
+        b: UnknownPlace,
+        value: f64,
+    ) {
         match (a, b) {
-            (Place::Row(i, p), Place::Row(j, o)) => {
+            (UnknownPlace::Row(i, p), UnknownPlace::Row(j, o)) => {
                 let entries = match i.cmp(&j) {
                     Ordering::Equal => &mut self.own[entry(p.max(o), p.min(o))],
                     Ordering::Greater => &mut self.coupling[entry(p, o)],
@@ -243,10 +252,11 @@ impl Tridiagonal {
                 };
                 entries[i.min(j)] += value;
             }
-            (Place::Row(i, p), Place::Border(j)) | (Place::Border(j), Place::Row(i, p)) => {
+            (UnknownPlace::Row(i, p), UnknownPlace::Border(j))
+            | (UnknownPlace::Border(j), UnknownPlace::Row(i, p)) => {
                 self.beside[(R * i + p) * B + j] += value;
             }
-            (Place::Border(i), Place::Border(j)) => {
+            (UnknownPlace::Border(i), UnknownPlace::Border(j)) => {
                 self.corner[i * B + j] += value;
                 if i != j {
                     self.corner[j * B + i] += value;
@@ -257,10 +267,14 @@ impl Tridiagonal {
 
     /// Adds to a right-hand side.
     #[inline(always)]
-    pub(super) fn add_right<const R: usize, const B: usize>(&mut self, place: Place, value: f64) {
+    pub(super) fn add_right<const R: usize, const B: usize>(
+        &mut self,
+        place: UnknownPlace,
+        value: f64,
+    ) {
         match place {
-            Place::Row(i, p) => self.beside[(R * i + p) * B + self.border] += value,
-            Place::Border(i) => self.corner[i * B + self.border] += value,
+            UnknownPlace::Row(i, p) => self.beside[(R * i + p) * B + self.border] += value,
+            UnknownPlace::Border(i) => self.corner[i * B + self.border] += value,
         }
     }
 

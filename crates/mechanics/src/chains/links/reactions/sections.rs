@@ -175,7 +175,7 @@ impl Sections {
         sound && self.ring.eliminate().is_some()
     }
 
-    /// Solves for one right-hand side in its place; behind the last joint that of the first comes once more.
+    /// Solves for one right-hand side in its place; after the last joint that of the first comes once more.
     #[inline(always)]
     pub(in crate::chains::links) fn solve<S: Simd>(&mut self, w: Wide<S>, values: &mut [Array; 2]) {
         self.spread(values);

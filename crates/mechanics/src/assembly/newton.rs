@@ -1,0 +1,498 @@
+//! Static equilibrium by Newton's method.
+//!
+//! ```text
+//! ∇E(u) = 0,   E = Σ ½ k (ℓ − p)² + Σ U(δ) − Σ m g·x − Σ M θ + E_tensioners + E_bearings
+//! ```
+//!
+//! u holds the free rollers, sprocket angles and centres, and tensioners. The Hessian is exact,
+//! with the term −F n·d of the rotating wheel, without which the iteration crawls. The ring of
+//! rollers is folded (0, N−1, 1, N−2, …) so that it becomes a band, with everything else as a border.
+
+mod contact;
+mod curvature;
+mod descend;
+
+use chaindrive_geometry::Vector;
+use chaindrive_integrate::{Moment, SecondOrderSystem};
+use nalgebra::DVector;
+use nalgebra_sparse::factorization::CscCholesky;
+use nalgebra_sparse::pattern::SparsityPattern;
+use nalgebra_sparse::{CooMatrix, CscMatrix};
+
+use crate::bodies::WheelSupport;
+use crate::seam::{Balance, Load, Sum};
+use crate::system::Member;
+use crate::tensioner::Extension;
+use crate::{AssemblyError, System};
+
+pub(crate) use curvature::{Curvature, curvature};
+
+/// A static state on the way to the start.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Statics {
+    /// Load that had been applied: "pretension", "gravity" or "load".
+    pub stage: &'static str,
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Largest force out of balance, relative to the largest link tension.
+    pub residual: f64,
+    /// Tension of every link \[N\], (links,).
+    pub tensions: Vec<f64>,
+    /// Contacts closed on every sprocket.
+    pub contacts: Vec<usize>,
+}
+
+/// Residual at which an iteration ends, relative to the largest link tension.
+const CONVERGED: f64 = 1e-9;
+/// Residual that is accepted where rounding keeps the iteration from going further.
+const ACCEPTED: f64 = 1e-6;
+
+/// Share of gravity or load below which the path of equilibria is taken to have ended.
+const LEAST_SHARE: f64 = 1e-3;
+
+/// Brings `q` into equilibrium: pretension first, then gravity, then load.
+pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Statics>, AssemblyError> {
+    let unknowns = Unknowns::new(system);
+    if unknowns.count == 0 {
+        return Ok(Vec::new());
+    }
+    let mut statics = Vec::new();
+    let taut = is_taut(system, q);
+    let mut at = Load {
+        gravity: 0.0,
+        torque: 0.0,
+    };
+    let mut newton = Newton {
+        system,
+        unknowns: &unknowns,
+        factored: None,
+    };
+    // A chain that pulls as it was laid finds its place under that alone; where Newton's method does not, downhill.
+    if taut {
+        let mut found = newton.solve(q, at, 300);
+        if found.residual >= ACCEPTED {
+            found = newton.descend(q, at);
+        }
+        *q = newton.accept(found, "pretension", &mut statics)?;
+    }
+    let stages: [(&'static str, bool); 2] = [
+        ("gravity", system.bodies.gravity != Vector::zeros()),
+        ("load", has_load(system)),
+    ];
+    // Gravity and load come on in shares, each from the equilibrium of the one before: shares grow while that works, and
+    // shrink where it does not.
+    for (stage, present) in stages {
+        let only = stage == "load" && statics.is_empty();
+        if !(present || only) {
+            continue;
+        }
+        // A slack chain has no stiffness across itself until its weight is on it.
+        let mut step = if taut { 0.25 } else { 1.0 };
+        let mut share = 0.0_f64;
+        while share < 1.0 {
+            let next = (share + step).min(1.0);
+            let mut load = at;
+            match stage {
+                "gravity" => load.gravity = next,
+                _ => load.torque = next,
+            }
+            let found = newton.solve(q, load, 120);
+            if found.residual < ACCEPTED {
+                share = next;
+                step *= 1.8;
+                q.clone_from(&found.q);
+                if share >= 1.0 {
+                    newton.accept(found, stage, &mut statics)?;
+                }
+            } else {
+                step *= 0.35;
+                if step < LEAST_SHARE {
+                    // The path ends here: let go with all of the load on.
+                    match stage {
+                        "gravity" => load.gravity = 1.0,
+                        _ => load.torque = 1.0,
+                    }
+                    let found = newton.descend(q, load);
+                    *q = newton.accept(found, stage, &mut statics)?;
+                    share = 1.0;
+                }
+            }
+        }
+        match stage {
+            "gravity" => at.gravity = 1.0,
+            _ => at.torque = 1.0,
+        }
+    }
+    for member in &system.chains {
+        member.chain.copy_ghosts(&mut q[member.entries.clone()]);
+    }
+    Ok(statics)
+}
+
+/// Whether the chain as laid is under tension.
+fn is_taut(system: &System, q: &[f64]) -> bool {
+    let still = vec![0.0; q.len()];
+    let at = Moment::stateless(system.begin, q, &still);
+    let mut record = system.new_record();
+    let mut rates = vec![0.0; system.quadratures() + system.states()];
+    let z = system.settled_states(q);
+    let at = Moment { z: &z, ..at };
+    system.evaluate(at, &mut still.clone(), &mut rates, &mut record);
+    let mut chains = system.chains.iter().zip(&record.chains);
+    chains.any(|(member, record)| {
+        let chain = &member.chain;
+        let mut tensions = Vec::new();
+        chain.tensions(member.own(at), record, &mut tensions);
+        let weight = (chain.weights()[0] * system.bodies.gravity.norm()).max(1e-9);
+        let slack = (1e-6 * weight).max(1e3 * tensions.len() as f64 * rounding(member, q));
+        tensions.iter().sum::<f64>() > slack
+    })
+}
+
+/// Force \[N\] that the rounding of coordinates alone may leave in a link.
+fn rounding(member: &Member, q: &[f64]) -> f64 {
+    let farthest = q[member.entries.clone()]
+        .iter()
+        .fold(0.0_f64, |m, x| m.max(x.abs()));
+    4.0 * f64::EPSILON * farthest * member.chain.stiffest_spring()
+}
+
+fn has_load(system: &System) -> bool {
+    let mut shafts = system.bodies.shafts.iter();
+    let torque = shafts.any(|shaft| !(shaft.drive.is_empty() && shaft.load.is_empty()));
+    torque || system.chains.iter().any(|member| member.chain.is_pulled())
+}
+
+/// Which entries of the state are unknown, and where they stand in the linear system.
+struct Unknowns {
+    /// State entry → row.
+    row: Vec<Option<usize>>,
+    count: usize,
+    /// Squared lever \[m²\] that turns the row's unit into metres: 1 for rollers, R² for angles.
+    scale: Vec<f64>,
+}
+
+impl Unknowns {
+    fn new(system: &System) -> Self {
+        let mut row = vec![None; system.dofs];
+        let mut scale = Vec::new();
+        let mut add = |entry: usize, lever: f64, scale: &mut Vec<f64>| {
+            if row[entry].is_none() {
+                row[entry] = Some(scale.len());
+                scale.push(lever);
+            }
+        };
+        for member in &system.chains {
+            for unknown in member.chain.unknowns() {
+                add(
+                    member.entries.start + unknown.entry,
+                    unknown.lever,
+                    &mut scale,
+                );
+            }
+        }
+        let bodies = &system.bodies;
+        for wheel in &bodies.wheels {
+            if let Some((dof, _)) = wheel.turn.turned_by() {
+                let lever = bodies.shafts[wheel.shaft].lever;
+                add(dof, lever * lever, &mut scale);
+            }
+            if let WheelSupport::Springs { dof, .. } = wheel.support {
+                add(dof, 1.0, &mut scale);
+                add(dof + 1, 1.0, &mut scale);
+            }
+        }
+        for shaft in &bodies.shafts {
+            if let Some(dof) = shaft.led() {
+                add(dof, shaft.lever * shaft.lever, &mut scale);
+            }
+        }
+        for slide in &bodies.slides {
+            if let Some(dof) = slide.dof {
+                add(dof, slide.carrier.reach().powi(2), &mut scale);
+            }
+        }
+        Self {
+            row,
+            count: scale.len(),
+            scale,
+        }
+    }
+}
+
+/// Outcome of an iteration.
+struct StaticSolution {
+    q: Vec<f64>,
+    iterations: usize,
+    residual: f64,
+    tensions: Vec<f64>,
+    contacts: Vec<usize>,
+}
+
+struct Newton<'a> {
+    system: &'a System,
+    unknowns: &'a Unknowns,
+    /// Of the last step: where contacts are the same, so are the places of what is not zero, and half the work is to find those.
+    factored: Option<Factorisation>,
+}
+
+/// A factorised matrix and the places of its entries.
+struct Factorisation {
+    pattern: SparsityPattern,
+    factor: CscCholesky<f64>,
+}
+
+impl Factorisation {
+    /// Factorises a matrix, in the places of another one where they are the same; none if it is not positive definite.
+    fn of(matrix: &CscMatrix<f64>, before: Option<Self>) -> Option<Self> {
+        match before {
+            Some(mut same) if same.pattern == *matrix.pattern() => {
+                let done = same.factor.refactor(matrix.values());
+                done.ok().map(|()| same)
+            }
+            _ => Some(Self {
+                pattern: matrix.pattern().clone(),
+                factor: CscCholesky::factor(matrix).ok()?,
+            }),
+        }
+    }
+}
+
+impl Newton<'_> {
+    fn accept(
+        &self,
+        found: StaticSolution,
+        stage: &'static str,
+        statics: &mut Vec<Statics>,
+    ) -> Result<Vec<f64>, AssemblyError> {
+        if found.residual >= ACCEPTED || found.residual.is_nan() {
+            let StaticSolution {
+                residual,
+                iterations,
+                ..
+            } = found;
+            return Err(self.system.no_equilibrium(stage, residual, iterations));
+        }
+        statics.push(Statics {
+            stage,
+            iterations: found.iterations,
+            residual: found.residual,
+            tensions: found.tensions,
+            contacts: found.contacts,
+        });
+        Ok(found.q)
+    }
+
+    /// Newton with a step cap and a small scaled shift.
+    ///
+    /// Steps need not lower the energy one by one: the seats are strongly curved valleys of
+    /// radius r_i − d₁/2, and a step along one first climbs and then falls back.
+    fn solve(&mut self, start: &[f64], load: Load, most: usize) -> StaticSolution {
+        let stiffness = self.stiffest();
+        let cap = self.longest();
+        let mut q = start.to_vec();
+        let mut shift = 1e-7 * stiffness;
+        let mut balance = self.balance(&q, load);
+        let mut residual = self.residual(&q, &balance);
+        let mut best = (residual, q.clone());
+        let mut iterations = 0;
+        while iterations < most && residual > CONVERGED {
+            // The step of Newton's method, cut where a roller would go too far.
+            let Some(step) = self.step(&balance, &mut shift, stiffness) else {
+                break;
+            };
+            let factor = (cap / self.farthest(&step)).min(1.0);
+            self.go(&mut q, &step, factor);
+            balance = self.balance(&q, load);
+            let now = self.residual(&q, &balance);
+            if !now.is_finite() {
+                break;
+            }
+            // The shift keeps the matrix definite: less of it as the iteration goes well.
+            shift = if now < 3.0 * residual {
+                (shift / 3.0).max(1e-14 * stiffness)
+            } else {
+                (shift * 2.0).min(1e-3 * stiffness)
+            };
+            // Rounding sets a floor: stop when a converged state no longer gets better.
+            let stalled = residual < ACCEPTED * 1e-2 && now > 0.5 * residual;
+            residual = now;
+            if residual < best.0 {
+                best = (residual, q.clone());
+            }
+            iterations += 1;
+            if stalled {
+                break;
+            }
+        }
+        let (residual, q) = best;
+        let balance = self.balance(&q, load);
+        StaticSolution {
+            q,
+            iterations,
+            residual,
+            tensions: balance.tensions,
+            contacts: balance.contacts,
+        }
+    }
+
+    /// Longest step of a roller \[m\]: a fifth of the radius that touches the teeth.
+    fn longest(&self) -> f64 {
+        let teeth = self.system.chains.iter().flat_map(|m| &m.contacts.teeth);
+        let smallest = teeth.map(|on| on.contacts.radius).reduce(f64::min);
+        0.2 * smallest.unwrap_or_else(|| self.system.pitch())
+    }
+
+    /// Stiffness of the stiffest link \[N/m\].
+    fn stiffest(&self) -> f64 {
+        let chains = self.system.chains.iter();
+        chains
+            .map(|member| member.chain.stiffest_spring())
+            .fold(0.0, f64::max)
+    }
+
+    /// Largest displacement of anything by a step \[m\].
+    fn farthest(&self, step: &[f64]) -> f64 {
+        let scaled = step.iter().zip(&self.unknowns.scale);
+        scaled
+            .map(|(s, lever)| s.abs() * lever.sqrt())
+            .fold(0.0, f64::max)
+    }
+
+    /// Moves along a share of a step.
+    fn go(&self, q: &mut [f64], step: &[f64], share: f64) {
+        for (entry, row) in self.unknowns.row.iter().enumerate() {
+            if let Some(row) = row {
+                q[entry] += share * step[*row];
+            }
+        }
+    }
+
+    fn residual(&self, q: &[f64], balance: &Balance) -> f64 {
+        let tension = balance.tensions.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
+        let gravity = self.system.bodies.gravity.norm();
+        // What rounding leaves in an unloaded chain is accepted.
+        let (mut mass, mut floor) = (0.0_f64, 1e-9_f64);
+        for member in &self.system.chains {
+            mass = mass.max(member.chain.weights()[1]);
+            floor = floor.max(rounding(member, q) / ACCEPTED);
+        }
+        let scale = tension.max(mass * gravity).max(floor);
+        let scaled = balance.gradient.iter().zip(&self.unknowns.scale);
+        scaled
+            .map(|(g, lever)| (g / lever.sqrt()).abs())
+            .fold(0.0, f64::max)
+            / scale
+    }
+
+    /// −(H + λ D)⁻¹ ∇E, raising λ until the matrix is positive definite.
+    fn step(&mut self, balance: &Balance, shift: &mut f64, stiffness: f64) -> Option<Vec<f64>> {
+        let n = self.unknowns.count;
+        while *shift < 1e3 * stiffness {
+            let mut matrix = CooMatrix::new(n, n);
+            // The Hessian, and the shift in the units of each row.
+            for &(i, j, value) in &balance.entries {
+                matrix.push(i, j, value);
+            }
+            for (i, lever) in self.unknowns.scale.iter().enumerate() {
+                matrix.push(i, i, *shift * lever);
+            }
+            self.factored = Factorisation::of(&CscMatrix::from(&matrix), self.factored.take());
+            if let Some(Factorisation { factor, .. }) = &self.factored {
+                let step = factor.solve(&(-&balance.gradient));
+                return Some(step.iter().copied().collect());
+            }
+            *shift *= 10.0;
+        }
+        None
+    }
+
+    fn balance(&self, q: &[f64], load: Load) -> Balance {
+        let system = self.system;
+        let mut sum = Sum {
+            row: &self.unknowns.row,
+            first: 0,
+            balance: Balance {
+                gradient: DVector::zeros(self.unknowns.count),
+                entries: Vec::new(),
+                contacts: vec![0; system.bodies.wheels.len()],
+                tensions: Vec::with_capacity(system.links()),
+            },
+        };
+        for member in &system.chains {
+            sum.first = member.entries.start;
+            let own = &q[member.entries.clone()];
+            member
+                .chain
+                .add_balance(own, system.bodies.gravity, load, &mut sum);
+        }
+        sum.first = 0;
+        self.add_bodies(q, load, &mut sum);
+        contact::add_contacts(system, q, &mut sum);
+        sum.balance
+    }
+
+    fn add_bodies(&self, q: &[f64], load: Load, sum: &mut Sum<'_>) {
+        let (bodies, begin) = (&self.system.bodies, self.system.begin);
+        let still = vec![0.0; q.len()];
+        for shaft in &bodies.shafts {
+            if let Some((dof, ratio)) = shaft.turn.turned_by() {
+                let kinematics = shaft.turn.kinematics(begin, q, &still);
+                let of = |torques| {
+                    bodies.torque(torques, kinematics, Moment::stateless(begin, q, &still))
+                };
+                let torque = of(&shaft.drive) + of(&shaft.load);
+                sum.force(dof, -load.torque * (ratio * torque));
+            }
+        }
+        for wheel in &bodies.wheels {
+            if let WheelSupport::Springs { dof, stiffness, .. } = &wheel.support {
+                for axis in 0..2 {
+                    let away = q[dof + axis] - wheel.centre[axis];
+                    let weight = load.gravity * wheel.mass * bodies.gravity[axis];
+                    sum.force(dof + axis, stiffness[axis] * away - weight);
+                    sum.stiffen(dof + axis, dof + axis, stiffness[axis]);
+                }
+            }
+        }
+        for coupling in &bodies.couplings {
+            let [twist, _] = bodies.twist(coupling, Moment::stateless(begin, q, &still));
+            for (entry, share) in bodies.twisted_by(coupling) {
+                sum.force(entry, coupling.stiffness * twist * share);
+                for (other, other_share) in bodies.twisted_by(coupling) {
+                    sum.stiffen(entry, other, coupling.stiffness * share * other_share);
+                }
+            }
+        }
+        for slide in &bodies.slides {
+            let Some(dof) = slide.dof else { continue };
+            let s = q[dof];
+            let Extension { length, lever } = slide.carrier.extension(s);
+            let push = slide.push.relaxed();
+            let force = push.force(length, 0.0, 0.0).elastic;
+            let h = 1e-6;
+            // The lever of a plunger changes slowly with the angle of its arm.
+            let [behind, ahead] = [s - h, s + h].map(|s| slide.carrier.extension(s).lever);
+            let bend = (ahead - behind) / (2.0 * h);
+            sum.force(dof, -force * lever);
+            sum.stiffen(
+                dof,
+                dof,
+                push.stiffness(length) * lever * lever - force * bend,
+            );
+            let pose = slide.pose(q, &still);
+            for (mass, at_rest) in slide.weights() {
+                let weight = bodies.gravity * (mass * load.gravity);
+                let (place, _) = slide.carry(pose, at_rest);
+                let Some(way) = slide.way(pose, place) else {
+                    continue;
+                };
+                sum.force(dof, -way.first.dot(&weight));
+                if way.bends() {
+                    // ∂²(−m g·x)/∂s² = −m g·∂²x/∂s²
+                    sum.stiffen(dof, dof, -weight.dot(&way.second));
+                }
+            }
+        }
+    }
+}
