@@ -9,27 +9,27 @@
 //! Drive::assemble ── each group ──┬─ all links stretch ─► assemble_as_is
 //!                                 └─ rigid links ───────► assemble_hard (2) ─► assemble_as_is, up to 20 times
 //!
-//! assemble_as_is: lay::lay (1) ─► relax::settle ─► put_in_place ── pins with play ─► settle::settle ─► tighten (3)
+//! assemble_as_is: layout::lay (1) ─► newton::settle ─► put_in_place ── pins with play ─► pseudo_transient::settle ─► tighten (3)
 //! ```
 //!
-//! 1. `lay` shortens all links by the strain of T₀, or moves the adjusted body on until the closing has that strain:
+//! 1. `layout::lay` shortens all links by the strain of T₀, or moves the adjusted body on until the closing has that strain:
 //!
 //!    ```text
 //!    Σ ℓ₀ = n p (1 + ε) − T₀ Σ 1/k     ε: strain that closes links of the pitch around the polygons
 //!    ```
 //!
 //!    ε and the travel are those of the phase at the start, or means over 8 phases of a tooth. The travel is searched for by
-//!    `close_by_motion`. `relax::settle` finds the equilibrium of the chain with its masses lumped at the rollers, first under the
+//!    `close_by_motion`. `newton::settle` finds the equilibrium of the chain with its masses lumped at the rollers, first under the
 //!    pretension alone, in at most 300 iterations of Newton's method, and then under gravity and load. It keeps the lengths: what teeth yield
 //!    is missing of T₀.
-//! 2. `assemble_hard`: rigid links owe their tension to the teeth alone, which yield by another law and not all alike. They are laid as links a
+//! 2. `rigid_links::assemble_hard`: rigid links owe their tension to the teeth alone, which yield by another law and not all alike. They are laid as links a
 //!    thousand times as stiff as teeth. The secant method finds the tension to be given to `lay` for which links carry T₀ in the mean
-//!    at the end of the first stage of `relax::settle`, to 1 ‰: at most 20 assemblies.
-//! 3. `settle::tighten`: pins with play do not lie where the lumped chain has its joints, but where they are pressed to in their bushes.
+//!    at the end of the first stage of `newton::settle`, to 1 ‰: at most 20 assemblies.
+//! 3. `pseudo_transient::tighten`: pins with play do not lie where the lumped chain has its joints, but where they are pressed to in their bushes.
 //!    Without gravity and load all links are made longer or shorter until they carry T₀ in the mean, to 1 ‰: in growing strides while the
 //!    chain is slack, then by the secant in a bracket, in at most 60 relaxations of at most 6000 iterations. A chain that carries T₀ in the mean over a
 //!    tooth keeps the length with which it was laid, and only its joints find their places: one relaxation. Two kinds of chain are to carry what the
-//!    lumped one carried in the first stage of `relax::settle`, not T₀: one with free rollers, if T₀ is that in the mean over a tooth, and
+//!    lumped one carried in the first stage of `newton::settle`, not T₀: one with free rollers, if T₀ is that in the mean over a tooth, and
 //!    one whose frame has grown since it was fitted. Gravity and load follow.
 
 mod free_trains;

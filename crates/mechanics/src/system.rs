@@ -103,6 +103,9 @@ impl System {
     /// Takes one step ([`Stepper::advance`]), as it is compiled here, beside the forces: a crate that calls the generic one
     /// compiles it anew, and as well as that crate is optimised.
     ///
+    /// What a try finds stands in the record of its evaluation. `commit`, called for the accepted one alone, takes contacts from
+    /// there into the memory: a rejected step leaves no trace.
+    ///
     /// # Errors
     /// Those of [`Stepper::advance`].
     #[inline(never)]

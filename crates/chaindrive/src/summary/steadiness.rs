@@ -339,14 +339,14 @@ mod tests {
             let sigma = 1.0 / (1.0 - phi * phi).sqrt();
             let quantile = 2.326_348 * sigma;
             let true_values = [0.0, sigma, -quantile, quantile];
-            let seeds = 1..=(2_500_000 / count as u64).min(300);
+            let seeds = 1..=(1_500_000 / count as u64).min(300);
             let found = judged(
                 true_values,
                 seeds.map(|seed| of(series(seed, phi, count), 25.0, 1e-9)),
             );
             for (k, [share, width, error]) in found.into_iter().enumerate() {
-                // Of noise they hold more than of drives, whose drifts they are made for.
-                assert!((0.88..1.0).contains(&share), "φ {phi}, {k}: {share}");
+                // Of noise they hold more than of drives, whose drifts they are made for; that they are not too wide, the ratio tells.
+                assert!(share > 0.88, "φ {phi}, {k}: {share}");
                 let ratio = width / error;
                 assert!((0.6..2.0).contains(&ratio), "φ {phi}, {k}: {ratio}");
             }
