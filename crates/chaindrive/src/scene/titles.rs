@@ -32,7 +32,9 @@ fn name_below(schema: &mut Value, name: &str) {
                 }
             }
             ("prefixItems", Value::Array(items)) => {
-                items.iter_mut().for_each(|item| name_below(item, name));
+                for item in items {
+                    name_below(item, name);
+                }
             }
             ("items", items) => name_below(items, name),
             _ => {}
@@ -112,7 +114,9 @@ mod tests {
                 judge(value, &format!("{place}/{key}"), titles);
             }
         } else if let Value::Array(items) = schema {
-            items.iter().for_each(|item| judge(item, place, titles));
+            for item in items {
+                judge(item, place, titles);
+            }
         }
     }
 

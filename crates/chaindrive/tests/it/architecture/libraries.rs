@@ -15,16 +15,16 @@ const ABOVE: [&str; 2] = ["hdrhistogram", "postcard"];
 
 /// What `cargo tree` tells of the workspace, a line a package.
 fn tree(arguments: &[&str]) -> String {
-    let told = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+    let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .args(["tree", "--offline", "--locked", "--prefix", "none"])
         .arg("--manifest-path")
         .arg(super::root().join("Cargo.toml"))
         .args(arguments)
         .output()
-        .unwrap();
-    let problem = String::from_utf8_lossy(&told.stderr);
-    assert!(told.status.success(), "{problem}");
-    String::from_utf8(told.stdout).unwrap()
+        .expect("Cargo, which runs the tests, is there");
+    let problem = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{problem}");
+    String::from_utf8(output.stdout).expect("Cargo writes UTF-8")
 }
 
 /// The example of laws asks nothing of a library that the others do not: otherwise the tests would compile it twice.

@@ -310,14 +310,13 @@ impl<'a> Sum<'a> {
                     self.blocks.beside[i * self.border + k] += row * (weight * other[k]);
                 }
             }
-            (BodyUnknowns::Corner, BodyUnknowns::Link(_)) => {
-                self.couple(there, other, place, row, weight)
-            }
             (BodyUnknowns::Roller(i), BodyUnknowns::Link(_) | BodyUnknowns::Corner) => {
                 self.loose[i].link = Some(self.index(there));
                 self.loose[i].coupling += other * row.transpose() * weight;
             }
-            (BodyUnknowns::Link(_) | BodyUnknowns::Corner, BodyUnknowns::Roller(_)) => {
+            // Of what is symmetric the other half is written.
+            (BodyUnknowns::Corner, BodyUnknowns::Link(_))
+            | (BodyUnknowns::Link(_) | BodyUnknowns::Corner, BodyUnknowns::Roller(_)) => {
                 self.couple(there, other, place, row, weight);
             }
             // Other pairs never touch.
