@@ -25,8 +25,10 @@ def scene():
     """Return the drive that every program simulates."""
     text = cd.scenes.marine_engine_bare().to_dict()
     del text["guides"], text["tensioners"]
-    # What every program has: no friction in joints, the loss of Lankarani and Nikravesh.
-    text["defaults"] = "0.1"
+    # What every program has: the loss of Lankarani and Nikravesh; joints of this chain do not rub.
+    text["contact"]["teeth"]["dissipation"] = "lankarani-nikravesh"
+    text["route"] |= {"start": "polygon", "pretension_at": "phase"}
+    text["run"]["run_in"] = 0
     text["title"] = "Marine two-stroke engine, camshaft drive, without guides and tensioner"
     diameter = text["chain"]["roller_diameter"]
     value, unit = diameter.split()

@@ -50,7 +50,7 @@ DEFAULTS = """\
 The values that a scene may leave open, and the source of each. Those that begin with *assumed* are
 nobody's measurement: [how real](../how-real.md) tries how much they matter. `chaindrive resolve
 my.toml` prints a scene with all of them written out, and every result carries that text as
-`resolved_scene`. `defaults = "0.1"` in a scene keeps the defaults of that version.
+`resolved_scene`. `defaults = "0.3"` in a scene keeps the defaults of that version.
 """
 PRESETS = """\
 # Presets

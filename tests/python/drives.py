@@ -13,6 +13,20 @@ import chaindrive as cd
 CHAINS = [("08B-1", 12.7e-3, 0.70), ("12B-1", 19.05e-3, 1.25), ("16B-1", 25.4e-3, 2.71)]
 KINDS = ["guide", "adjusted", "springs", "moved", "slider", "arm"]
 
+# Values of a drive without friction in its joints and compliance behind its contacts, set going
+# with the kick of the polygons: small steps go wrong, and faults show in short runs.
+BARE: dict[str, Any] = {
+    "route.start": "polygon",
+    "route.pretension_at": "phase",
+    "run.run_in": 0,
+    "contact.teeth.series": 0,
+    "contact.teeth.dissipation": "lankarani-nikravesh",
+    "contact.guides.dissipation": "lankarani-nikravesh",
+    "contact.joints.series": 0,
+    "contact.joints.friction": "none",
+    "contact.joints.dissipation": "lankarani-nikravesh",
+}
+
 
 def random_drive(seed: int) -> cd.Drive:
     """Return a drive of two or three sprockets; the seed modulo six says of which kind."""

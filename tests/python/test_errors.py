@@ -137,7 +137,7 @@ def test_what_was_replaced_stands_in_no_line():
 def test_a_warning_points_at_the_line_that_called_us() -> None:
     face = {"kind": "bar", "start": [0.2, 0.86], "end": [-0.2, 0.86], "end_radius": 0.02}
     rail = {"name": "rail", "touches": "plates", "face": face}
-    drive = cd.scenes.marine_two_sprockets().replace({"guides": [rail], "defaults": "0.1"})
+    drive = cd.scenes.marine_two_sprockets().replace({"guides": [rail], "run.run_in": 0})
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", cd.ClashWarning)
         cd.simulate(drive, until=1e-3, error=False)

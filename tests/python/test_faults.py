@@ -3,10 +3,10 @@
 from typing import Any
 
 import pytest
+from drives import BARE
 
 import chaindrive as cd
 
-BARE = {"defaults": "0.1"}
 TWO = "marine_two_sprockets"
 CRANK, CAM = "sprockets.crank", "sprockets.camshaft"
 SHORT = {"until": 0.05, "every": 5e-4, "run_in": 0}

@@ -6,6 +6,7 @@ import warnings
 import numpy as np
 import pytest
 import xarray as xr
+from drives import BARE
 
 import chaindrive as cd
 
@@ -195,7 +196,7 @@ def test_zarr_holds_what_memory_holds(tmp_path):
 
 
 def test_a_run_says_how_exact_it_is() -> None:
-    bare = cd.scenes.bicycle_slack().replace({"defaults": "0.1"})
+    bare = cd.scenes.bicycle_slack().replace(BARE)
     run = cd.simulate(bare, until=6e-3, every=1e-3, run_in=0, record="span_tension")
     story = run.attrs
     assert story["error_estimate"] == "made"
@@ -211,7 +212,7 @@ def test_a_run_says_how_exact_it_is() -> None:
 def test_a_result_that_contradicts_itself_is_warned_of(recwarn: pytest.WarningsRecorder) -> None:
     """The verdict itself is tested in Rust: here it becomes a warning."""
     settings = {"every": 1e-5, "run_in": 0, "method": "implicit-damping", "error": False}
-    changes = {"defaults": "0.1", "sprockets.chainring.motion.speed": "-5000 rpm"}
+    changes = BARE | {"sprockets.chainring.motion.speed": "-5000 rpm"}
     fast = cd.scenes.bicycle().replace(changes)
     with pytest.warns(cd.DistrustedResultWarning, match="does not add up"):
         run = cd.simulate(fast, until=3e-4, **settings)
@@ -276,7 +277,7 @@ def test_the_line_and_functions_are_told_of_the_run_in() -> None:
 def test_bodies_in_each_others_way_are_warned_of_once() -> None:
     face = {"kind": "bar", "start": [0.2, 0.86], "end": [-0.2, 0.86], "end_radius": 0.02}
     rail = {"name": "rail", "touches": "plates", "face": face}
-    drive = cd.scenes.marine_two_sprockets().replace({"guides": [rail], "defaults": "0.1"})
+    drive = cd.scenes.marine_two_sprockets().replace({"guides": [rail], "run.run_in": 0})
     with pytest.warns(cd.ClashWarning, match="`rail` cuts into the teeth of `crank`") as told:
         cd.simulate(drive, until=1e-3, error=False)
     assert len(told) == 1

@@ -282,8 +282,7 @@ impl Scene {
 
     /// Settings of a run and channels to record, unless the caller gives others.
     pub fn run_defaults(&self) -> RunDefaults {
-        let version = self.content.defaults.unwrap_or_default();
-        self.content.run.suggestions(version)
+        self.content.run.suggestions()
     }
 }
 

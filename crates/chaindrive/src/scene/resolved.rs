@@ -166,7 +166,7 @@ impl ResolvedScene {
 
     /// The scene as TOML.
     pub(crate) fn text(&self) -> String {
-        let version = Version::default().name();
+        let version = Version::PRESENT;
         let mut text = format!("format = \"{version}\"\ndefaults = \"{version}\"\n");
         self.table(&self.values, "", "", &mut text);
         text

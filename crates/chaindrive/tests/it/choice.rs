@@ -8,6 +8,8 @@ use chaindrive::{
 };
 use chaindrive_integrate::SecondOrderSystem;
 
+use crate::judged::bare;
+
 fn start(scene: &str) -> Assembled {
     let drive = Scene::preset(scene).unwrap().drive().unwrap();
     drive.assemble().unwrap()
@@ -114,13 +116,11 @@ fn the_bicycle_keeps_what_was_asked() {
     assert!((1e-9..=ACCURACY).contains(&error), "{error:.1e}, {choice}");
 }
 
-/// A slack chain's twins part within the window: statistics are promised, and the reason says so. They do without the friction
-/// in the joints that later defaults have.
+/// A slack chain's twins part within the window: statistics are promised, and the reason says so. They do without friction
+/// in the joints.
 #[test]
 fn beyond_the_horizon_statistics_are_promised() {
-    let scene = Scene::preset("bicycle_slack").unwrap();
-    let scene = scene.replace("defaults", "\"0.1\"").unwrap();
-    let start = scene.drive().unwrap().assemble().unwrap();
+    let start = bare("bicycle_slack").drive().unwrap().assemble().unwrap();
     let choice = chosen(&start, ACCURACY);
     assert_eq!(choice.promise, Promise::Statistics);
     assert!(choice.to_string().contains("chaotic"), "{choice}");

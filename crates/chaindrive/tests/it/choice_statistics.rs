@@ -7,7 +7,9 @@
 use std::thread::scope;
 
 use chaindrive::precision::{ACCURACY, choose};
-use chaindrive::{Assembled, Run, Scene, Simulation};
+use chaindrive::{Assembled, Run, Simulation};
+
+use crate::judged::bare;
 
 /// Statistics of the tension of a span.
 const NAMES: [&str; 7] = ["mean", "rms", "p1", "p10", "p50", "p90", "p99"];
@@ -94,8 +96,7 @@ fn worst(found: &[Vec<Statistics>], replicates: &[Vec<Statistics>]) -> (f64, Str
 /// The drive under a torque on its camshaft.
 fn drive(torque: &str) -> Assembled {
     // Without friction in the joints and with the kick of the polygons its twins part early.
-    let scene = Scene::preset("marine_two_sprockets").unwrap();
-    let scene = scene.replace("defaults", "\"0.1\"").unwrap();
+    let scene = bare("marine_two_sprockets");
     let scene = scene.replace("sprockets.camshaft.load[0].torque", torque);
     scene.unwrap().drive().unwrap().assemble().unwrap()
 }

@@ -180,7 +180,7 @@ fn dropped(gravity: &str, law: &str) -> Verdict {
         ("gravity", gravity.as_str()),
         ("contact.joints.law", &law),
         // Plates are rigid.
-        ("defaults", "\"0.1\""),
+        ("contact.joints.series", "0"),
     ];
     let run = Run {
         step: Some(2e-7),

@@ -3,9 +3,10 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use chaindrive::precision::{Strands, estimate};
-use chaindrive::{Assembled, Run, Scene};
+use chaindrive::{Assembled, Run};
 
 use crate::against_reference::{errors, horizon, reference, rms, tensions};
+use crate::judged::bare;
 
 /// A drive, changed in one value, the length of the run \[s\], and its step in those that it would choose.
 struct Case {
@@ -37,9 +38,8 @@ const fn changed(preset: &'static str, change: (&'static str, &'static str), unt
 
 impl Case {
     fn start(&self) -> Assembled {
-        // The table is of the drives of version 0.1, whose twins part sooner.
-        let scene = Scene::preset(self.preset).unwrap();
-        let mut scene = scene.replace("defaults", "\"0.1\"").unwrap();
+        // Twins of bare drives part sooner.
+        let mut scene = bare(self.preset);
         if let Some((path, value)) = self.change {
             scene = scene.replace(path, value).unwrap();
         }

@@ -8,24 +8,20 @@ use chaindrive::{
     SimulationError, Stepping, execute,
 };
 
+use crate::judged::bare;
+
 fn never() -> bool {
     false
 }
 
-/// A preset without friction in its joints and with the kick of the polygons at its start: its twins part within milliseconds.
-fn first_version(preset: &str) -> Scene {
-    let scene = Scene::preset(preset).unwrap();
-    scene.replace("defaults", "\"0.1\"").unwrap()
-}
-
 fn judged(scene: &str, run: &Run) -> Estimate {
-    let start = first_version(scene).drive().unwrap().assemble();
+    let start = bare(scene).drive().unwrap().assemble();
     estimate(&start.unwrap(), run, &never).unwrap()
 }
 
 /// Tensions of the spans, sampled over some time \[N\]; the first is the tight one.
 fn tensions(scene: &str, run: &Run, nudge: f64) -> Vec<[f64; 2]> {
-    let start = first_version(scene).drive().unwrap().assemble();
+    let start = bare(scene).drive().unwrap().assemble();
     let start = start.unwrap().nudged(nudge);
     let mut simulation = Simulation::from_assembled(start, run).unwrap();
     let mut found = Vec::new();
@@ -228,7 +224,7 @@ fn an_estimate_behind_a_choice_is_that_of_the_run_for_less() {
 fn a_stored_result_carries_its_error_and_its_horizon() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("slack.zarr");
-    let scene = first_version("bicycle_slack");
+    let scene = bare("bicycle_slack");
     let run = Run {
         until: 6e-3,
         every: 1e-3,

@@ -4,8 +4,8 @@ use std::cell::Cell;
 
 use chaindrive::record::{Existing, StoppedRun, ZarrSink};
 use chaindrive::{
-    Channel, MOST_CIRCUITS, Memory, Onlooker, Reason, Report, Request, RunError, Scene,
-    SettingValue, Settings, Simulation, execute,
+    Channel, MOST_CIRCUITS, Memory, Onlooker, Reason, Report, Request, RunError, SettingValue,
+    Settings, Simulation, execute,
 };
 
 use crate::judged::preset;
@@ -238,10 +238,6 @@ fn only_what_repeats_is_run_in_by_itself() {
             "{name}: {told}"
         );
     }
-    let old = format!("defaults = \"0.2\"\n{}", Scene::preset(two).unwrap().text());
-    let old = Scene::from_toml(&old, "old").unwrap();
-    let (report, _) = ran(&old, &[("until", "1 ms"), ("method", "verlet")]);
-    assert_eq!(report.ran_in, None);
     let free = preset(
         two,
         &[("sprockets.crank.load", pushed), ("settle", "false")],

@@ -364,7 +364,6 @@ fn paths_lead_into_chains_and_shafts() {
 #[test]
 fn chains_that_differ_are_resolved_each_for_itself() {
     let text = r#"
-defaults = "0.1"
 [[chains]]
 name = "a"
 type = "081"

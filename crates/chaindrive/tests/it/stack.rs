@@ -77,17 +77,12 @@ fn teeth_have_the_stack_of_the_catalogue_behind_them() {
     // The law that particles have by default is that of the whole stack.
     let law = "law = { kind = \"johnson\", length = \"50 mm\", clearance = \"0.3 mm\" }";
     assert_eq!(behind_teeth(&read(&plain.replace(law, ""))), None);
-    assert_eq!(
-        behind_teeth(&read(&format!("defaults = \"0.1\"\n{plain}"))),
-        None
-    );
     let given = plain.replace(law, &format!("{law}\nseries = \"2 GN/m\""));
     assert_eq!(behind_teeth(&read(&given)), Some(2e9));
     // Nothing lies behind where a scene says so, and a scene in full says so.
     let rigid = plain.replace(law, &format!("{law}\nseries = 0"));
     assert_eq!(behind_teeth(&read(&rigid)), None);
-    let old = read(&format!("defaults = \"0.1\"\n{plain}"));
-    assert_eq!(behind_teeth(&old.resolved().unwrap()), None);
+    assert_eq!(behind_teeth(&read(&rigid).resolved().unwrap()), None);
 }
 
 /// Half of what the stiffness of a link leaves beside its joint lies behind the pin, and a scene that is written out in full has it too.

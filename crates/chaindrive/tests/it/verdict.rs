@@ -8,7 +8,7 @@ use chaindrive::{
     Summary, Trust, Verdict, execute,
 };
 
-use crate::judged::{finished, names, notes, page, preset, run, verdict};
+use crate::judged::{bare, finished, names, notes, page, preset, run, verdict};
 
 /// The verdict on the estimate of a run alone: it is not carried out.
 fn examined(scene: &Scene, run: &Run) -> Verdict {
@@ -35,14 +35,11 @@ fn a_run_examined_to_its_end_is_trusted() {
     assert!(verdict.reasons.is_empty());
 }
 
-/// Plates and joints of the defaults of version 0.1: rigid, without friction, where small steps go wrong.
-const BARE: (&str, &str) = ("defaults", "\"0.1\"");
-
 /// Defect A4: a fifth of the energy is missing, and nothing but a line of the summary said so.
 #[test]
 fn energy_that_does_not_add_up_is_distrusted() {
-    let change = [BARE, ("sprockets.chainring.motion.speed", "-5000 rpm")];
-    let verdict = verdict(&preset("bicycle", &change), &run(3e-3, 300.0));
+    let fast = bare("bicycle").replace("sprockets.chainring.motion.speed", "-5000 rpm");
+    let verdict = verdict(&fast.unwrap(), &run(3e-3, 300.0));
     assert_eq!(verdict.trust, Trust::Distrusted);
     assert!(names(&verdict).contains(&"energy-missing"), "{verdict}");
     assert!(verdict.warning().unwrap().contains("does not add up"));
@@ -55,7 +52,7 @@ fn losses_that_are_wrong_are_distrusted() {
         step: Some(2.2e-6),
         ..run(1e-4, 10.0)
     };
-    let rough = verdict(&preset("motorcycle", &[BARE]), &long_steps);
+    let rough = verdict(&bare("motorcycle"), &long_steps);
     assert_eq!(rough.trust, Trust::Distrusted, "{rough}");
     let found = names(&rough);
     assert!(found.contains(&"losses-wrong") && found.contains(&"efficiency-above-one"));
@@ -220,7 +217,7 @@ fn waveforms_that_end_within_the_run_are_a_note() {
         step: Some(2e-6),
         ..run(6e-3, 6.0)
     };
-    let found = examined(&preset("bicycle_slack", &[BARE]), &settings);
+    let found = examined(&bare("bicycle_slack"), &settings);
     assert_eq!(found.trust, Trust::Trusted, "{found}");
     assert!(notes(&found).contains(&"horizon-within-run"), "{found}");
     assert!(found.note().contains("for link tensions"), "{found}");
@@ -231,7 +228,7 @@ fn waveforms_that_end_within_the_run_are_a_note() {
 /// Defect A8: a fraction of 50 ms was looked at, and the rest was said to be fine.
 #[test]
 fn what_was_not_looked_at_is_said() {
-    let timing = preset("timing_drive", &[("defaults", "\"0.1\"")]);
+    let timing = bare("timing_drive");
     let found = examined(&timing, &run(0.05, 50.0));
     assert_eq!(notes(&found), ["not-examined"], "{found}");
     assert_eq!(

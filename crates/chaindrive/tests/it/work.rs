@@ -2,13 +2,12 @@
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use chaindrive::precision::{Divergence, Row, Study, Table, Variant, work_precision};
-use chaindrive::{Assembled, Run, Scene, SimulationError, Stepping};
+use chaindrive::{Assembled, Run, SimulationError, Stepping};
 
-/// A preset as in version 0.1: without friction in its joints twins part early.
+use crate::judged::bare;
+
 fn start(scene: &str) -> Assembled {
-    let scene = Scene::preset(scene).unwrap();
-    let scene = scene.replace("defaults", "\"0.1\"").unwrap();
-    scene.drive().unwrap().assemble().unwrap()
+    bare(scene).drive().unwrap().assemble().unwrap()
 }
 
 fn variant(stepping: Stepping, step: f64) -> Variant {

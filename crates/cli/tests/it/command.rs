@@ -4,15 +4,20 @@ use std::fs;
 
 use crate::command_line::{attributes, chaindrive, folder, group, run, words};
 
+/// Options that make drives start with the kick of the polygons, without friction in their joints and compliance behind their contacts.
+const BARE: &str = "--run-in 0 --set route.start=polygon --set route.pretension_at=phase \
+    --set contact.teeth.series=0 --set contact.teeth.dissipation=lankarani-nikravesh \
+    --set contact.joints.series=0 --set contact.joints.dissipation=lankarani-nikravesh \
+    --set contact.joints.friction=none";
+
 /// `check` and `describe` told of clashes, and the run that suffers from them did not.
 #[test]
 fn a_run_tells_of_bodies_in_each_others_way_once() {
     let folder = folder();
     let rail = "guides=[{name=\"rail\",touches=\"plates\",face={kind=\"bar\",start=[0.2,0.86],end=[-0.2,0.86],end_radius=0.02}}]";
     let run = ["run", "marine_two_sprockets", "--until", "1 ms"];
-    // Started with the kick of version 0.1, so short a run loses enough to be judged by it.
-    let kick = ["--set", "defaults=\"0.1\""];
-    let arguments = [&run[..], &["--no-error", "--set", rail], &kick].concat();
+    // Started with a kick, so short a run loses enough to be judged by it.
+    let arguments = [&run[..], &["--no-error", "--set", rail], &words(BARE)].concat();
     let (code, _, err) = self::run(folder.path(), &arguments);
     assert_eq!(code, 0, "{err}");
     let told =
@@ -402,9 +407,8 @@ fn the_marine_engine_runs() {
 fn a_run_says_how_exact_it_is_unless_told_not_to() {
     let folder = folder();
     let at = folder.path();
-    let short = words(
-        "run bicycle_slack --set defaults=\"0.1\" --until 6ms -o run.zarr --overwrite --numerics",
-    );
+    let short = format!("run bicycle_slack {BARE} --until 6ms -o run.zarr --overwrite --numerics");
+    let short = words(&short);
     let (code, out, err) = run(at, &short);
     assert_eq!(code, 0, "{err}");
     assert!(out.contains("method chosen            implicit-damping"));
@@ -436,8 +440,7 @@ fn a_result_that_contradicts_itself_is_told_of_even_quietly() {
     let folder = folder();
     let at = folder.path();
     let settings = "--every 10us -q --no-error -o run.zarr";
-    let rough =
-        format!("run motorcycle --set defaults=\"0.1\" --step 2.2us --until 0.1ms {settings}");
+    let rough = format!("run motorcycle {BARE} --step 2.2us --until 0.1ms {settings}");
     let (code, out, err) = run(at, &words(&rough));
     assert_eq!((code, out.as_str()), (0, ""));
     assert_eq!(err.lines().count(), 1, "{err}");

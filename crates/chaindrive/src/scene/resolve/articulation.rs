@@ -124,7 +124,7 @@ impl<'a> Joints<'a> {
         };
         Some(Friction::SpringSlider(SpringSlider {
             coefficient: 0.0,
-            stiffness: spring.factor.value(findings.version) * spring.unit,
+            stiffness: spring.factor.value * spring.unit,
         }))
     }
 
@@ -135,7 +135,7 @@ impl<'a> Joints<'a> {
         if places.all(|place| (place - first).abs() <= 0.0) {
             return None;
         }
-        let lever = defaults::LATERAL_LEVER.multiple(findings.version, plate_height);
+        let lever = defaults::LATERAL_LEVER.multiple(plate_height);
         let mut at = findings.at("chain.lateral");
         let mut keys = at.completed(&self.text.lateral);
         at.fill(&mut keys, "lever", Some(lever), "")?;
@@ -148,14 +148,14 @@ impl<'a> Joints<'a> {
         let place = findings
             .chain
             .map_or(common, |_| "chain.joint.contact.friction");
-        let coefficient = defaults::JOINTS_FRICTION.value(findings.version);
+        let coefficient = defaults::JOINTS_FRICTION.value;
         let knows_pin = |chain: &CatalogueChain| chain.number(Number::PinDiameter).is_some();
-        let rubs = self.of_type.is_some_and(knows_pin) && coefficient > 0.0;
+        let rubs = self.of_type.is_some_and(knows_pin);
         let Some(spring) = spring.filter(|_| rubs) else {
             findings.assume_kind(place, "none");
             return Friction::None;
         };
-        let (stiffness, soft) = spring.factor.multiple(findings.version, spring.unit);
+        let (stiffness, soft) = spring.factor.multiple(spring.unit);
         let law = SpringSlider {
             coefficient,
             stiffness,
@@ -190,7 +190,7 @@ impl<'a> Joints<'a> {
         } else {
             &defaults::PLATES
         };
-        let share = default.value(findings.version);
+        let share = default.value;
         let compliance =
             1.0 / self.link_stiffness? - 1.0 / stiffness_under_pretension(joint, route, radius);
         let stiffness = 1.0 / (share * compliance);

@@ -221,8 +221,7 @@ fn damping(
             .or(text.damping_ratio, default)
     } else {
         // Rigid links are laid, not damped: whatever damping belongs to the laying stiffness.
-        text.damping_ratio
-            .map_or(default.value(findings.version), f64::from)
+        text.damping_ratio.map_or(default.value, f64::from)
     };
     // c = 2 ζ √(k m)
     let pairs = stiffness.iter().zip(masses);

@@ -254,9 +254,8 @@ pub(super) fn friction(
         at.fill(&mut keys, "relative_clearance", clearance, hint)?;
     }
     if lubricated || kind == "spring-slider" {
-        let version = at.findings.version;
         let spring = journal.spring;
-        let spring = spring.map(|it| it.factor.multiple(version, it.unit));
+        let spring = spring.map(|it| it.factor.multiple(it.unit));
         let hint = "give it, such as \"50 MN/m\"; it is known in joints of links whose pins and stiffness are";
         at.fill(&mut keys, "stiffness", spring, hint)?;
     }

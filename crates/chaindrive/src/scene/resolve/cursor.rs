@@ -45,7 +45,7 @@ impl<'t> Cursor<'_, 't> {
     pub(super) fn or(&mut self, given: Option<impl Into<f64>>, default: &Default) -> f64 {
         given.map_or_else(
             || {
-                let value = default.value(self.findings.version);
+                let value = default.value;
                 self.assume(value, default.basis.remark());
                 value
             },
@@ -62,7 +62,7 @@ impl<'t> Cursor<'_, 't> {
     ) -> f64 {
         given.map_or_else(
             || {
-                let (value, remark) = default.multiple(self.findings.version, of);
+                let (value, remark) = default.multiple(of);
                 self.assume(value, remark);
                 value
             },
@@ -77,7 +77,7 @@ impl<'t> Cursor<'_, 't> {
         choice: &Default<T>,
     ) -> T {
         given.unwrap_or_else(|| {
-            let chosen = choice.value(self.findings.version);
+            let chosen = choice.value;
             self.assume(json!(chosen), choice.basis.remark());
             chosen
         })

@@ -40,7 +40,7 @@ pub(super) fn resolve(
         return None;
     }
     let mut at = at.key("flank");
-    let (elastic, text) = on_bulge(gap, chain, steel(at.findings.version))?;
+    let (elastic, text) = on_bulge(gap, chain, steel())?;
     at.key("law")
         .assume(text, "follows from the curvature of the flank");
     let width = at

@@ -102,7 +102,6 @@ fn on_span(
     };
     let span = passing.span(guide, between.as_ref());
     let span = at.keep(span)?;
-    let version = at.findings.version;
     if radius.is_none() {
         let Some(bow) = bow else {
             let hint =
@@ -116,8 +115,8 @@ fn on_span(
         let mut end_radius = *end_radius;
         if end_radius.is_none() && guide.touches == Touches::Rollers {
             let tips = passing.tips(guide, between.as_ref(), sprockets);
-            let angle = end_angle.map_or(defaults::END_ANGLE.value(version), f64::from);
-            let usual = defaults::END_RADIUS.value(version) * (ends[1] - ends[0]).norm();
+            let angle = end_angle.map_or(defaults::END_ANGLE.value, f64::from);
+            let usual = defaults::END_RADIUS.value * (ends[1] - ends[0]).norm();
             if let Some((radius, name)) =
                 shorter_ends(ends, (usual, angle, *material), &tips, passing.size[0])
             {
@@ -132,7 +131,7 @@ fn on_span(
     let bow = match bow {
         Some(bow) => bow.0,
         None if chain.uncounted.is_some() => {
-            let phase = defaults::PHASE.value(version);
+            let phase = defaults::PHASE.value;
             let range = passing.pitches_by_bow(guide, phase).map(|[least, most]| {
                 format!(": by its bow the route takes {least:.2} to {most:.2} links")
             });
@@ -144,7 +143,7 @@ fn on_span(
         None => {
             let links = chain.chain.links();
             // A drive is not another one for where it happens to stand.
-            let phase = defaults::PHASE.value(version);
+            let phase = defaults::PHASE.value;
             let found = passing.closing_bow(guide, links, phase);
             let found = at.key("bow").keep(found)?;
             let remark = format!("computed: {links} links close without stress");

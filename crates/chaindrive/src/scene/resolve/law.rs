@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::cursor::Cursor;
 use crate::scene::defaults::{self, Default};
-use crate::scene::schema::{Version, Written};
+use crate::scene::schema::Written;
 
 /// The two surfaces of a contact, as far as the drive gives them.
 #[derive(Clone, Copy, Debug)]
@@ -22,10 +22,10 @@ pub(super) struct Pair {
 }
 
 /// Material that surfaces are assumed to be of.
-pub(super) fn steel(version: Version) -> Elasticity {
+pub(super) fn steel() -> Elasticity {
     Elasticity {
-        modulus: defaults::MODULUS.value(version),
-        poisson: defaults::POISSON.value(version),
+        modulus: defaults::MODULUS.value,
+        poisson: defaults::POISSON.value,
     }
 }
 
@@ -47,7 +47,7 @@ pub(super) fn cylindrical(
 
 /// A spring with a multiple of a stiffness \[N/m\], for a law that a scene leaves open.
 pub(super) fn linear(stiffness: f64, default: &Default, mut at: Cursor<'_, '_>) -> Elastic {
-    let (stiffness, remark) = default.multiple(at.findings.version, stiffness);
+    let (stiffness, remark) = default.multiple(stiffness);
     at.assume(json!({"kind": "linear", "stiffness": stiffness}), remark);
     Elastic::Power(Power::linear(stiffness))
 }

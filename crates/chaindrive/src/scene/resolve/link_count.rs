@@ -45,10 +45,9 @@ pub(super) fn links(
         findings.refuse_with("chain.links", "missing", "give the number of links");
         return None;
     }
-    let version = findings.version;
-    let usual = pitch * defaults::ROLLER_DIAMETER.value(version);
+    let usual = pitch * defaults::ROLLER_DIAMETER.value;
     let roller_diameter = text.roller_diameter.map_or(usual, f64::from);
-    let usual = roller_diameter * defaults::PLATE_HEIGHT.value(version);
+    let usual = roller_diameter * defaults::PLATE_HEIGHT.value;
     let plate_height = text.plate_height.map_or(usual, f64::from);
     Some(
         match around(scene, described, [pitch, roller_diameter, plate_height]) {

@@ -428,7 +428,7 @@ fn law(
             findings.refuse_with(&format!("chain.{name}.length"), "missing", hint);
             return None;
         };
-        let steel = steel(findings.version);
+        let steel = steel();
         let law = cylindrical(pair, clearance, length, steel);
         if law.is_ok() {
             let text = json!({
@@ -473,7 +473,7 @@ fn laying_stiffness(
     let teeth = match (&scene.contact.teeth.law, length) {
         (Some(law), _) => elastic(law, pair, findings.at("contact.teeth.law"))?,
         (None, Some(length)) => {
-            let steel = steel(findings.version);
+            let steel = steel();
             Elastic::Johnson(Johnson::flat(pair.radius, length, steel.composite(steel)))
         }
         (None, None) => {

@@ -44,13 +44,13 @@ use on_span::GuidedChain;
 
 use super::defaults;
 use super::error::{Problem, Problems};
-use super::schema::{Contact, SceneText, Version};
+use super::schema::{Contact, SceneText};
 use super::tree::{Node, Value};
 use chaindrive_quantities::Length;
 
 /// Builds the drive of a scene, or collects everything that prevents it.
 pub(crate) fn drive(scene: &SceneText, tree: &Node) -> Result<(Drive, Vec<Assumption>), Problems> {
-    let mut findings = Findings::new(tree, scene.defaults.unwrap_or_default());
+    let mut findings = Findings::new(tree);
     let names = Names::new(scene, &mut findings);
     findings.oil = lubricant::resolve(scene, &mut findings);
     let parts = parts(scene, &names, &mut findings);
@@ -107,7 +107,7 @@ pub(crate) fn friction(
     contact: &Contact,
     tree: &Node,
 ) -> Result<chaindrive_contact::Friction, Problems> {
-    let mut findings = Findings::new(tree, Version::default());
+    let mut findings = Findings::new(tree);
     let journal = contact::Journal::default();
     let text = contact.friction.as_ref();
     let law = text.and_then(|text| contact::friction(text, journal, findings.at("friction")));
@@ -198,7 +198,7 @@ fn gravity(scene: &SceneText, findings: &mut Findings<'_>) -> Vector {
     if let Some([x, y]) = scene.gravity {
         return Vector::new(x.0, y.0);
     }
-    let down = defaults::GRAVITY.value(findings.version);
+    let down = defaults::GRAVITY.value;
     let remark = defaults::GRAVITY.basis.remark();
     findings.assume("gravity", json!([0.0, down]), remark);
     Vector::new(0.0, down)
@@ -264,8 +264,6 @@ pub(crate) struct Assumption {
 /// The problems and assumptions found so far, and the tree that knows the lines.
 struct Findings<'t> {
     tree: &'t Node,
-    /// Whose defaults hold.
-    version: Version,
     /// The chain that `chain` and `route` in paths mean, where there are several.
     chain: Option<usize>,
     /// The oil, and who has asked for it.
@@ -277,10 +275,9 @@ struct Findings<'t> {
 }
 
 impl<'t> Findings<'t> {
-    fn new(tree: &'t Node, version: Version) -> Self {
+    fn new(tree: &'t Node) -> Self {
         Self {
             tree,
-            version,
             chain: None,
             oil: None,
             problems: Problems::default(),

@@ -131,7 +131,7 @@ fn behind(
         at.key("rim").refuse("without a `stack`", hint);
     }
     if said.series().is_none()
-        && let Some(behind) = chain.behind_teeth.behind(at.findings)
+        && let Some(behind) = chain.behind_teeth.behind()
     {
         let mut at = at.findings.at(format!("{}.series", said.path));
         if of_surfaces && behind.stiffness > 0.0 {
@@ -188,7 +188,7 @@ fn law(gap: &ToothGap, chain: &ResolvedChain, mut at: Cursor<'_, '_>) -> Option<
         return Some(linear(stiffness, &defaults::TEETH_STIFFNESS, at));
     }
     let roller = chain.roller();
-    let steel = steel(at.findings.version);
+    let steel = steel();
     let seated = roller
         .length
         .and_then(|length| cylindrical(roller, gap.seat_clearance, length, steel).ok());

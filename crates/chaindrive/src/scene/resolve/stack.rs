@@ -57,12 +57,12 @@ impl Parts {
     }
 
     /// Default compliance behind the teeth, for chains of the catalogue.
-    pub(super) fn behind(&self, findings: &Findings<'_>) -> Option<SeriesStiffness> {
+    pub(super) fn behind(&self) -> Option<SeriesStiffness> {
         let chain = self.of_type?;
         let default = &defaults::BEHIND_TEETH;
-        let share = default.value(findings.version);
+        let share = default.value;
         let load = chain.number(Number::BreakingLoad).map(|it| share * it);
-        let compliance = load.and_then(|load| self.contacts(load, findings));
+        let compliance = load.and_then(|load| self.contacts(load));
         Some(SeriesStiffness {
             stiffness: compliance.map_or(0.0, f64::recip),
             remark: format!("at {share} {}, {}", default.unit, default.basis.remark()),
@@ -70,17 +70,17 @@ impl Parts {
     }
 
     /// 1/k_s \[m/N\] of the contacts, where something lies behind and all dimensions are known.
-    fn contacts(&self, load: f64, findings: &Findings<'_>) -> Option<f64> {
+    fn contacts(&self, load: f64) -> Option<f64> {
         if load <= 0.0 {
             return None;
         }
         let [on_bush, on_pin] = self.fused;
         let mut compliance = 0.0;
         if on_bush {
-            compliance += yields(self.roller_on_bush()?, load, findings)?;
+            compliance += yields(self.roller_on_bush()?, load)?;
         }
         if on_pin {
-            compliance += yields(self.bush_on_pin()?, load, findings)?;
+            compliance += yields(self.bush_on_pin()?, load)?;
         }
         // Strands side by side yield together.
         compliance /= self.strands;
@@ -173,8 +173,8 @@ pub(super) fn refuse_elsewhere(scene: &SceneText, findings: &mut Findings<'_>) {
 }
 
 /// δ/F \[m/N\] of something round in a bore that is wider, under a load \[N\].
-fn yields([radius, play, length]: Fit, load: f64, findings: &Findings<'_>) -> Option<f64> {
-    let steel = steel(findings.version);
+fn yields([radius, play, length]: Fit, load: f64) -> Option<f64> {
+    let steel = steel();
     let pair = Cylinders::pin_in_hole(radius + play, radius, length, steel.composite(steel));
     let law: Elastic = CylinderLaw::Conformal.between(&pair).ok()?;
     // The law grows without bound: from a depth that is enough down to the rounding of a length.

@@ -31,7 +31,7 @@ pub(super) fn form(
         (TipForm::Max, None) => Some(Tip::Maximum),
     };
     let Some(tooth) = tooth else {
-        let gap = defaults::GAP.value(at.findings.version);
+        let gap = defaults::GAP.value;
         let text = json!({"kind": "iso606", "gap": gap, "tip": "mid", "seat": "bottom"});
         at.assume(text, defaults::GAP.basis.remark());
         return Some(ToothForm::Iso606 {

@@ -118,34 +118,16 @@ pub(crate) struct SceneText {
 }
 
 /// A version of chaindrive.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize, JsonSchema,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 pub(crate) enum Version {
-    /// The first one.
-    #[serde(rename = "0.1")]
-    V0_1,
-    /// The second one.
-    #[serde(rename = "0.2")]
-    V0_2,
     /// The present one.
-    #[default]
     #[serde(rename = "0.3")]
     V0_3,
 }
 
 impl Version {
-    /// Every version, the first one first.
-    pub(crate) const ALL: [Self; 3] = [Self::V0_1, Self::V0_2, Self::V0_3];
-
-    /// Its name, as a scene writes it.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::V0_1 => "0.1",
-            Self::V0_2 => "0.2",
-            Self::V0_3 => "0.3",
-        }
-    }
+    /// The present one, as a scene writes it.
+    pub(crate) const PRESENT: &str = "0.3";
 }
 
 fn settle() -> bool {

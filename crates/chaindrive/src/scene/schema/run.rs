@@ -10,8 +10,6 @@ use crate::scene::accuracy::Quantity;
 use crate::scene::run_in::RunIn;
 use chaindrive_quantities::{Length, Ratio, Time};
 
-use super::Version;
-
 /// End of a run \[s\]. *Assumed*.
 pub(crate) const UNTIL: f64 = 1.0;
 
@@ -121,15 +119,10 @@ pub(crate) enum Events {
 
 impl Run {
     /// The same in SI units.
-    pub(crate) fn suggestions(&self, version: Version) -> RunDefaults {
-        let by_itself = if version < Version::V0_3 {
-            RunIn::None
-        } else {
-            RunIn::Usual
-        };
+    pub(crate) fn suggestions(&self) -> RunDefaults {
         RunDefaults {
             until: self.until.map(|time| time.0),
-            run_in: self.run_in.clone().map_or(by_itself, |it| it.0),
+            run_in: self.run_in.clone().map_or(RunIn::Usual, |it| it.0),
             every: self.every.map(|time| time.0),
             method: self.method,
             step: self.step.map(|time| time.0),
