@@ -19,28 +19,28 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GasSpring {
-    /// Push in the assembled position F₀ [N].
+    /// Push in the assembled position F₀ \[N\].
     #[schemars(with = "Force", extend("exclusiveMinimum" = 0))]
     pub preload: f64,
-    /// Length of the column of gas at assembly l [m].
+    /// Length of the column of gas at assembly l \[m\].
     #[schemars(with = "Length", extend("exclusiveMinimum" = 0))]
     pub length: f64,
-    /// Polytropic exponent n [–].
+    /// Polytropic exponent n \[–\].
     #[schemars(with = "Ratio", extend("minimum" = 1, "maximum" = 1.67))]
     pub exponent: f64,
-    /// Damping c [N s/m].
+    /// Damping c \[N s/m\].
     #[serde(default)]
     #[schemars(with = "Damping", extend("minimum" = 0))]
     pub damping: f64,
 }
 
 impl GasSpring {
-    /// Length of the column of gas at extension x [m].
+    /// Length of the column of gas at extension x \[m\].
     fn column(&self, x: f64) -> f64 {
         (self.length + x).max(0.01 * self.length)
     }
 
-    /// Push of the gas [N].
+    /// Push of the gas \[N\].
     fn gas(&self, x: f64) -> f64 {
         self.preload * (self.length / self.column(x)).powf(self.exponent)
     }

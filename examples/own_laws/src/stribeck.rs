@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Friction that falls from a static to a kinetic level as a film of oil builds up.
 ///
 /// ```text
-/// f = −N γ(v) tanh(v/v_t),   γ = μ_c + (μ_s − μ_c) exp[−(v/v_s)²]
+/// f = −N γ(v) tanh(v/v_t),   γ = μ_c + (μ_s − μ_c) exp\[−(v/v_s)²\]
 /// ```
 ///
 /// The hyperbolic tangent takes the force through zero slip: a contact creeps instead of sticking.
@@ -17,22 +17,22 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stribeck {
-    /// Coefficient of static friction μ_s [–].
+    /// Coefficient of static friction μ_s \[–\].
     #[schemars(with = "Ratio", extend("minimum" = 0))]
     pub static_coefficient: f64,
-    /// Coefficient of kinetic friction μ_c [–].
+    /// Coefficient of kinetic friction μ_c \[–\].
     #[schemars(with = "Ratio", extend("minimum" = 0))]
     pub coefficient: f64,
-    /// Slip v_s [m/s] at which most of the difference is gone.
+    /// Slip v_s \[m/s\] at which most of the difference is gone.
     #[schemars(with = "Speed", extend("exclusiveMinimum" = 0))]
     pub stribeck_speed: f64,
-    /// Slip v_t [m/s] over which the force reverses; small beside v_s.
+    /// Slip v_t \[m/s\] over which the force reverses; small beside v_s.
     #[schemars(with = "Speed", extend("exclusiveMinimum" = 0))]
     pub transition_speed: f64,
 }
 
 impl Stribeck {
-    /// γ [–] and dγ/dv [s/m].
+    /// γ \[–\] and dγ/dv \[s/m\].
     fn level(&self, slip: f64) -> [f64; 2] {
         let share = slip / self.stribeck_speed;
         let surplus = (self.static_coefficient - self.coefficient) * (-share * share).exp();

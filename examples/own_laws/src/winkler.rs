@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 /// g = (4√2/3) (K L/h) √R δ^{3/2},   U = (2/5) g δ
 /// ```
 ///
-/// For a layer much thinner than the patch of contact is wide, bonded to a rigid rail: K = E (1 − ν)/[(1 + ν)(1 − 2ν)].
+/// For a layer much thinner than the patch of contact is wide, bonded to a rigid rail: K = E (1 − ν)/\[(1 + ν)(1 − 2ν)\].
 ///
 /// # Source
 /// K. L. Johnson, *Contact Mechanics*, Cambridge University Press, 1985, section 4.3: p = (K/h)(δ − x²/2R), integrated over
@@ -18,22 +18,22 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Winkler {
-    /// Modulus of the layer K [Pa].
+    /// Modulus of the layer K \[Pa\].
     #[schemars(with = "Pressure", extend("exclusiveMinimum" = 0))]
     pub modulus: f64,
-    /// Thickness of the layer h [m].
+    /// Thickness of the layer h \[m\].
     #[schemars(with = "Length", extend("exclusiveMinimum" = 0))]
     pub thickness: f64,
-    /// Length of the contact L [m].
+    /// Length of the contact L \[m\].
     #[schemars(with = "Length", extend("exclusiveMinimum" = 0))]
     pub length: f64,
-    /// Radius of the roller R [m].
+    /// Radius of the roller R \[m\].
     #[schemars(with = "Length", extend("exclusiveMinimum" = 0))]
     pub radius: f64,
 }
 
 impl Winkler {
-    /// g/δ^{3/2} [N/m^1.5]
+    /// g/δ^{3/2} \[N/m^1.5\]
     pub fn scale(&self) -> f64 {
         4.0 * 2_f64.sqrt() / 3.0 * self.modulus * self.length / self.thickness * self.radius.sqrt()
     }

@@ -61,6 +61,8 @@ fn e07_a_link_bounces_without_loss() {
         );
         let mut simulation = start(&text);
         let (mut passages, mut depth) = (Vec::new(), 0.0_f64);
+        let at_first = simulation.advance_to(0.0).expect("it hangs").energy;
+        let fallen = row[2] * gravity * row[3];
         for (begin, parts) in [(first, 240), (second, 40)] {
             let mut before = (0.0, row[3], 0.0);
             for part in -20..=parts {
@@ -73,6 +75,8 @@ fn e07_a_link_bounces_without_loss() {
                 }
                 before = at;
                 assert!((sample.roller_y[1] - sample.roller_y[0]).abs() < 1e-12);
+                let open = sample.energy.residual(&at_first);
+                assert!(open.abs() < 0.01 * fallen, "{open} of {fallen} J");
             }
         }
         let times = [

@@ -129,7 +129,7 @@ fn the_command_and_rust_do_the_same() {
         ("run_in", "--run-in", "0 s"),
     ];
     hold("bicycle", "events", &joints);
-    let run_in = [("run_in", "--run-in", "5 ms")];
+    let run_in = [("run_in", "--run-in", "50 ms")];
     hold("marine_two_sprockets", "run in", &run_in);
 }
 
