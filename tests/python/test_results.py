@@ -263,7 +263,7 @@ def test_the_line_and_functions_are_told_of_the_run_in() -> None:
     assert told.shares
     assert all(0 <= share <= 1 for share in told.shares)
     plain: list[float] = []
-    cd.simulate(drive, run_in=0.2, progress=plain.append, **settings)
+    cd.simulate(drive, run_in=1.0, progress=plain.append, **settings)
     assert plain[0] == 0
     assert plain[-1] == 1
 
