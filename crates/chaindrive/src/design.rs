@@ -164,7 +164,7 @@ struct Mover<'m> {
     turns: bool,
     /// Its travel.
     travel: f64,
-    /// Whether the scene says that it adjusts.
+    /// Named by the scene as what adjusts.
     adjusts: bool,
 }
 

@@ -400,7 +400,7 @@ impl Marks {
         marks
     }
 
-    /// Whether the last sample is the first after a multiple of `every`.
+    /// True at the first sample after each multiple of `every`.
     fn pass(&mut self, simulation: &Simulation) -> bool {
         let Some(every) = self.every else {
             return false;

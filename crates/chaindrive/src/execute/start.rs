@@ -40,7 +40,7 @@ pub(super) struct RunState {
     pub(super) summary: Summary,
 }
 
-/// What an estimate at t = 0 says of the choice that was made on the assembled drive.
+/// Verdict of an estimate at t = 0 on the method and step chosen for the assembled drive.
 enum Check {
     /// The run keeps the accuracy, and this is its estimate.
     Kept(Box<Estimate>),

@@ -95,7 +95,7 @@ pub struct Choice {
     pub accuracy: f64,
     /// Bound of the error of the run chosen \[–\].
     pub error: f64,
-    /// Whether the accuracy asked for is kept; if not, this is the best method of the list.
+    /// True if the run keeps the requested accuracy; otherwise no method of the list does, and this is the best of them.
     pub kept: bool,
     /// The quantity whose accuracy is promised.
     pub promise: Promise,
@@ -182,7 +182,7 @@ impl Trials<'_> {
     }
 }
 
-/// Whether the quantity is zero in the reference: then there is no relative error.
+/// True for a quantity that is zero in the reference, and so has no relative error.
 fn nothing(base: &Trace, of: Quantity) -> bool {
     match of {
         Quantity::Tension => base.tensions(Strands::of([base])).mean() <= 0.0,
@@ -335,7 +335,7 @@ struct CandidateErrors {
     unaccounted: f64,
     /// The same over what was moved \[–\].
     open: f64,
-    /// Whether impacts shorter than a step may add energy, in the candidate and its reference alike.
+    /// Implicit steps: impacts shorter than a step may add energy, in the candidate and its reference alike.
     implicit: bool,
     work: f64,
     gap: Option<Gap>,

@@ -285,10 +285,7 @@ fn prune(value: &mut Json) {
     }
 }
 
-/// Laws that are written in the order of the schema; the keys of others stand as the scene has them, and then what is filled in.
-const IN_ORDER: [&str; 4] = ["Film", "Bearing", "ShaftDrag", "Lateral"];
-
-/// Brings the keys of such laws into order.
+/// Brings the keys of all tables into the order of the schema.
 fn in_order(value: &mut Json, schema: &Json, reading: &Reading<'_>) {
     let core = reading.core(schema);
     let table = match Expectation::of(core) {
@@ -300,19 +297,11 @@ fn in_order(value: &mut Json, schema: &Json, reading: &Reading<'_>) {
     };
     match value {
         Json::Object(entries) => {
-            let choices = schema["anyOf"].as_array().into_iter().flatten();
-            let mut names = choices.chain([schema]).filter_map(|it| it["$ref"].as_str());
-            if names.any(|name| {
-                IN_ORDER
-                    .iter()
-                    .any(|law| name.ends_with(&format!("/{law}")))
-            }) {
-                let keys = table["properties"].as_object();
-                let place = |key: &str| keys?.keys().position(|known| known == key);
-                let mut sorted: Vec<_> = std::mem::take(entries).into_iter().collect();
-                sorted.sort_by_key(|(key, _)| place(key));
-                *entries = sorted.into_iter().collect();
-            }
+            let keys = table["properties"].as_object();
+            let place = |key: &str| keys?.keys().position(|known| known == key);
+            let mut sorted: Vec<_> = std::mem::take(entries).into_iter().collect();
+            sorted.sort_by_key(|(key, _)| place(key));
+            *entries = sorted.into_iter().collect();
             for (key, value) in entries {
                 in_order(value, &table["properties"][key.as_str()], reading);
             }

@@ -1,12 +1,13 @@
 //! Titles for the members of unions in the schema, by which generators of code name their classes.
 
+use heck::ToUpperCamelCase as _;
 use serde_json::{Map, Value};
 
 /// Gives every member of a union that is not a reference a title: the name of the union, and the kind, word or form of the member,
 /// such as `ElasticJohnson`, `SprocketCentreWithUnit`, `ChainWithPitch`.
 pub(super) fn name_members(schema: &mut Value) {
     let title = schema.get("title").and_then(Value::as_str);
-    let name = camel_case(title.unwrap_or_default());
+    let name = title.unwrap_or_default().to_upper_camel_case();
     name_below(schema, &name);
 }
 
@@ -18,12 +19,12 @@ fn name_below(schema: &mut Value, name: &str) {
         match (key.as_str(), value) {
             ("$defs", Value::Object(definitions)) => {
                 for (definition, schema) in definitions {
-                    name_below(schema, &camel_case(definition));
+                    name_below(schema, &definition.to_upper_camel_case());
                 }
             }
             ("properties", Value::Object(properties)) => {
                 for (property, schema) in properties {
-                    name_below(schema, &format!("{name}{}", camel_case(property)));
+                    name_below(schema, &format!("{name}{}", property.to_upper_camel_case()));
                 }
             }
             ("oneOf" | "anyOf", Value::Array(members)) => {
@@ -59,14 +60,14 @@ fn form(member: &Map<String, Value>) -> Option<String> {
     let properties = member.get("properties");
     let kind = properties.and_then(|it| it.pointer("/kind/const"));
     if let Some(word) = kind.or(member.get("const")).and_then(Value::as_str) {
-        return Some(camel_case(word));
+        return Some(word.to_upper_camel_case());
     }
     if properties.is_some_and(|it| it.get("unit").is_some()) {
         return Some("WithUnit".to_owned());
     }
     let required = member.get("required").and_then(|it| it[0].as_str());
     if let Some(key) = required.filter(|_| properties.is_none()) {
-        return Some(format!("With{}", camel_case(key)));
+        return Some(format!("With{}", key.to_upper_camel_case()));
     }
     let form = match member.get("type").and_then(Value::as_str) {
         _ if member.contains_key("enum") => "Word",
@@ -77,18 +78,6 @@ fn form(member: &Map<String, Value>) -> Option<String> {
         _ => "Table",
     };
     Some(form.to_owned())
-}
-
-/// `motion_of-length` as `MotionOfLength`.
-fn camel_case(words: &str) -> String {
-    let parts = words.split(|c: char| !c.is_alphanumeric());
-    parts
-        .filter_map(|part| {
-            let mut letters = part.chars();
-            let first = letters.next()?.to_ascii_uppercase();
-            Some(std::iter::once(first).chain(letters).collect::<String>())
-        })
-        .collect()
 }
 
 #[cfg(test)]

@@ -255,6 +255,16 @@ fn graph(files: &Files) -> Graph {
     graph
 }
 
+/// The arrows of a graph, as `a/b → c`.
+fn named(graph: &Graph) -> Vec<String> {
+    let arrows = graph
+        .iter()
+        .flat_map(|(from, to)| to.iter().map(move |to| (from, to)));
+    arrows
+        .map(|(from, to)| format!("{} → {}", from.join("/"), to.join("/")))
+        .collect()
+}
+
 /// Strongly connected components of more than one file.
 fn circles(graph: &Graph) -> Vec<Vec<Vec<String>>> {
     let reached = |from: &Vec<String>| {
@@ -364,13 +374,7 @@ fn circles_are_read_off_the_sources() {
     write("c.rs", "use crate::b;\npub fn see() { b::Bee; }\n");
     let graph = graph(&read(&folder));
     fs::remove_dir_all(&folder).expect("it was there");
-    let plain: Vec<String> = graph
-        .iter()
-        .flat_map(|(from, to)| {
-            to.iter()
-                .map(|to| format!("{} → {}", from.join("/"), to.join("/")))
-        })
-        .collect();
+    let plain = named(&graph);
     assert_eq!(
         plain,
         ["a → b", "a → c", "a/deep → c", "b → a/deep", "c → b"]

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use super::super::sources;
-use super::{File, Files, circles, graph};
+use super::{File, Files, circles, graph, named};
 
 pub(super) fn read(package: &Path) -> Files {
     let mut files = Files::new();
@@ -102,13 +102,7 @@ fn imports_of_python_are_read_off_the_sources() {
     write("d.py", "from chaindrive import deep\n");
     let graph = graph(&read(&folder));
     fs::remove_dir_all(&folder).expect("it was there");
-    let plain: Vec<String> = graph
-        .iter()
-        .flat_map(|(from, to)| {
-            to.iter()
-                .map(|to| format!("{} → {}", from.join("/"), to.join("/")))
-        })
-        .collect();
+    let plain = named(&graph);
     let expected = [
         "a → deep/c",
         "deep → deep/b",
