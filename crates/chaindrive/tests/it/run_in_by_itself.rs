@@ -256,6 +256,7 @@ fn only_what_repeats_is_run_in_by_itself() {
 
 /// Where the tensions creep with a plunger, the run-in lasts until they do no more; its steady mean, from four seconds on, is 659.8 to 660.7 N
 /// for other beginnings (`route.phase` 0 to 0.71).
+// Costs: tensions creep for more than a second of the timing drive.
 #[test]
 fn a_run_in_waits_for_a_plunger_that_creeps() {
     let (report, _) = ran(

@@ -185,7 +185,7 @@ fn all_of_it_is_seen_and_conserves_energy() {
         "damping_ratio = 0.1",
         "damping_ratio = 0.1\nscatter = { roller_diameter = 0.002, seed = 5 }",
     );
-    run(&text.replace("0.5 s", "0.05 s"), |_| {});
+    run(&text.replace("0.5 s", "0.02 s"), |_| {});
     let scene = Scene::from_text(&text, "case.toml").unwrap();
     let drive = scene.drive().unwrap();
     let chain = &drive.chains[0].chain;

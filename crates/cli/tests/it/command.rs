@@ -403,6 +403,7 @@ fn the_marine_engine_runs() {
     assert_eq!(attributes(&at.join("engine.zarr"))["samples"], 101);
 }
 
+// Costs: what chooses a method, and what estimates its error, repeat the run with shorter steps.
 #[test]
 fn a_run_says_how_exact_it_is_unless_told_not_to() {
     let folder = folder();
