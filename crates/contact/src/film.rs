@@ -1,4 +1,7 @@
 //! The oil film that a cylinder squeezes out of its seat.
+//!
+//! A run computes it for lanes of contacts at once, in `contact/film.rs` of the crate `mechanics`: a change of the law is made in both, and tests
+//! hold them against each other.
 
 use std::f64::consts::SQRT_2;
 

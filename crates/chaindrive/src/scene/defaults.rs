@@ -1,7 +1,7 @@
 //! Defaults of values that a scene leaves open: one table, with value, unit and source.
 //!
-//! A default stands here and nowhere else: the parts of a scene are resolved with it, the schema tells it to
-//! editors, and [`Scene::resolved`](super::Scene::resolved) writes it out. Scenes that say `defaults = "…"` are promised the values of
+//! Defaults of the drive stand here, those of `[run]` in `schema/run.rs`, of an accuracy in `accuracy.rs`: the parts of a scene are resolved with them,
+//! the schema tells them to editors, and [`Scene::resolved`](super::Scene::resolved) writes it out. Scenes that say `defaults = "…"` are promised the values of
 //! that release: whoever changes one after its release keeps the old value for them.
 //!
 //! An absent thing (no friction, no damping, a phase of zero) is no default in this sense: it
