@@ -149,6 +149,7 @@ cd.simulate(cd.scenes.bicycle_slack(), until=100.0, every=1e-4, run_in=0, output
 """
 
 
+@pytest.mark.costs("another interpreter writes until contacts are there")
 @pytest.mark.skipif(os.name == "nt", reason="there is no kill -9")
 def test_events_survive_a_kill(tmp_path):
     pytest.importorskip("zarr")

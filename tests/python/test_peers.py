@@ -48,7 +48,7 @@ def test_drive_json_is_current(peers):
     same(drive_data.numbers(), measure.load())
 
 
-@pytest.mark.costs("numba compiles the other program")
+@pytest.mark.slow
 def test_chaindrive_moves_as_the_numba_program(peers):
     """Same model, same method, other code: the tensions agree to rounding, as far as chaos lets.
 

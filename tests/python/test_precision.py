@@ -53,6 +53,7 @@ def test_the_diagram_has_a_line_a_method(table):
     assert axes.get_xscale() == axes.get_yscale() == "log"
 
 
+@pytest.mark.costs("two interpreters load what draws")
 def test_the_command_draws_the_diagram_of_its_table(tmp_path):
     short = ["--until", "5 ms", "--methods", "verlet,rk4", "--repeats", "1", "-o", "bench"]
     whole = [sys.executable, "-m", "chaindrive", "bench", "spinning_ring", *short]

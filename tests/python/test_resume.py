@@ -119,6 +119,7 @@ cd.load(sys.argv[1])
 """
 
 
+@pytest.mark.costs("another interpreter settles for long until it is stopped")
 @posix
 @pytest.mark.parametrize("what", ["describe", "statics", "modes", "load"])
 def test_ctrl_c_is_heard_while_nothing_comes(tmp_path, what):

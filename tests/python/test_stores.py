@@ -41,6 +41,7 @@ class Growing:
         self.writer.wait()
 
 
+@pytest.mark.costs("another interpreter writes until it is stopped")
 @posix
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
 def test_a_signal_takes_effect_when_the_result_says_so(tmp_path, name):
@@ -122,6 +123,7 @@ def killed(tmp_path_factory):
     return made.store
 
 
+@pytest.mark.costs("another interpreter writes until it is stopped")
 def test_chunks_agree_while_a_store_grows_and_when_it_is_stopped(killed, growing, tmp_path):
     assert xr.open_zarr(growing.store).chunks["time"]
     assert xr.open_zarr(killed).chunks["time"]
@@ -144,6 +146,7 @@ def test_a_result_is_running_or_was_killed(growing, killed):
     assert bool(left["span_tension"].notnull().any())
 
 
+@pytest.mark.costs("another interpreter writes until it is stopped")
 def test_a_writer_keeps_others_out(growing):
     who = f"process {growing.writer.pid} is writing"
     with pytest.raises(cd.WriteError, match=who) as caught:
