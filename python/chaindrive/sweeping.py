@@ -129,8 +129,9 @@ def sweep(
         - statistics of each variant, such as ``span_tension_mean``, ``span_tension_half_width``
           (of the 95 % interval of the mean), ``span_tension_std``, ``span_tension_min``,
           ``span_tension_max`` (…, span), ``contact_force_p99``,
-          ``contact_force_max`` [N], ``impact_force_p50``, ``impact_force_p99`` [N] (NaN below 100
-          impacts),
+          ``contact_force_max``, ``link_tension_max`` [N], ``sprocket_power_mean`` [W],
+          ``bearing_force_max`` [N] (…, sprocket), ``impact_force_p50``, ``impact_force_p99`` [N]
+          (NaN below 100 impacts),
           ``impact_impulse`` [N s], ``impact_speed`` [m/s] (…, sprocket), see the summary of a run,
           ``energy_dissipated_total``, ``energy_residual_max`` [J],
           ``steps``; those of contacts by kind where the scene logs them; ``accuracy_error`` and
@@ -142,6 +143,9 @@ def sweep(
         - ``verdict`` (…), a text: ``"trusted"``, ``"caution"`` or ``"distrusted"``, with the names
           of the ``reasons`` and a ``verdict_note`` in words, as the attributes of a run have them;
           no variant is better than ``"caution"``, since a sweep does not estimate errors;
+        - ``chain_verdict`` (…), a text: ``"pass"``, ``"not judged"``, ``"warning"`` or ``"fail"``,
+          with ``chain_reasons`` and a ``chain_verdict_note``: whether the chains may carry their
+          loads;
         - ``error`` (…), a text: why a variant failed, empty when it did not. Its numbers are NaN
           and its verdict is empty.
 

@@ -211,7 +211,7 @@ def test_one_efficiency_everywhere(until, unknown, monkeypatch):
     if unknown is None:
         value = run.attrs["efficiency"]
         assert float(whole) == value
-        assert f"{100 * value:.3f} %" in run.attrs["summary"]
+        assert f"{100 * value:.1f} %" in run.attrs["summary"]
         assert title == f"efficiency {100 * value:.2f} %"
         # The first interval of 500 is left out.
         assert float(part) == pytest.approx(value, abs=0.01)
@@ -438,7 +438,8 @@ def test_the_rating_of_a_b_series_is_that_of_its_maker(industrial):
     assert made_for.attrs["power_limited_by"] == "maker"
     towards = made_for["shaft_load_angle"].sel(sprocket=["driver", "driven"])
     assert np.allclose(np.abs(np.diff(towards)), 180.0, atol=5.0)
-    assert "above-rating" in run.attrs["reasons"]
+    assert "rated-power" in run.attrs["chain_reasons"].split()
+    assert run.attrs["chain_verdict"] == "fail"
 
 
 def test_ratings_that_nobody_knows_are_refused():

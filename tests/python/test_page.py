@@ -15,6 +15,7 @@ RUNS = [("marine_engine", 0.05, 0.1), ("bicycle", 0.0, 0.02)]
 IN_SI = {"N": 1.0, "kN": 1e3, "W": 1.0, "kW": 1e3, "N m": 1.0, "kN m": 1e3}
 ORDER = [
     "verdict",
+    "verdict on the chain",
     "record",
     "what the drive does",
     "span tensions",
@@ -47,8 +48,8 @@ def column(page: Page, title: str, heading: str) -> dict[str, float]:
 
 
 def close(told: dict[str, float], known: xr.DataArray, within: float = 1e-3) -> None:
-    # A column has the digits of its greatest value.
-    least = 1e-5 * float(abs(known).max())
+    # A column has the digits of its greatest value; samples of an idler say little of its power.
+    least = max(1e-5, 0.5 * within) * float(abs(known).max())
     for name, value in told.items():
         assert value == pytest.approx(float(known.sel({known.dims[0]: name})), within, least)
 
@@ -57,23 +58,29 @@ def test_a_page_tells_what_the_arrays_hold(run: xr.Dataset) -> None:
     page = run.drive.summary()
     titles = [it["title"].split(":")[0] for it in page.sections]
     assert titles == [title for title in ORDER if title in titles]
+    # Means are those of whole periods, or of all of a record that has none.
+    period, end = run.attrs["slowest_forcing"], float(run["time"][-1])
+    whole = run.sel(time=slice(0.0, end // period * period if period < end else end))
     does = "what the drive does"
-    power = (run["sprocket_torque"] * run["sprocket_speed"]).mean("time")
-    close(column(page, does, "power"), abs(power), 2e-3)
-    close(column(page, does, "torque"), abs(run["sprocket_torque"].mean("time")), 2e-3)
-    close(column(page, does, "speed"), run["sprocket_speed"].mean("time") * 30 / np.pi)
-    means = run[["sprocket_force_x", "sprocket_force_y"]].mean("time")
+    power = (whole["sprocket_torque"] * whole["sprocket_speed"]).mean("time")
+    close(column(page, does, "power"), abs(power), 0.02)
+    close(column(page, does, "torque"), abs(whole["sprocket_torque"].mean("time")), 0.02)
+    close(column(page, does, "speed"), whole["sprocket_speed"].mean("time") * 30 / np.pi, 2e-3)
+    means = whole[["sprocket_force_x", "sprocket_force_y"]].mean("time")
     force = np.hypot(means["sprocket_force_x"], means["sprocket_force_y"])
     shafts = column(page, "bearing and guide forces", "mean")
     of_sprockets = {name: it for name, it in shafts.items() if not name.startswith("guide ")}
-    close(of_sprockets, force, 5e-3)
+    close(of_sprockets, force, 0.02)
+    # Extremes are those of steps: no sample lies beyond.
     greatest = column(page, "span tensions", "greatest")
-    close(greatest, run["span_tension"].max("time"))
-    lost = run["energy_losses"].isel(time=-1) - run["energy_losses"].isel(time=0)
-    duration = float(run["time"][-1] - run["time"][0])
+    for span, value in greatest.items():
+        sampled = float(run["span_tension"].sel(span=span).max("time"))
+        assert 0.999 * sampled <= value < 1.1 * sampled
+    lost = whole["energy_losses"].isel(time=-1) - whole["energy_losses"].isel(time=0)
+    duration = float(whole["time"][-1] - whole["time"][0])
     told = column(page, "losses", "power")
-    assert told.pop("all") == pytest.approx(float(lost.sum()) / duration, rel=1e-3)
-    close(told, lost / duration, 2e-3)
+    assert told.pop("all") == pytest.approx(float(lost.sum()) / duration, rel=0.02)
+    close(told, lost / duration, 0.02)
     for heading, name in (("99 of 100", "p99"), ("greatest", "max")):
         struck = column(page, "impacts of rollers that seat", heading)
         for sprocket, value in struck.items():
@@ -86,6 +93,8 @@ def test_a_page_tells_what_the_arrays_hold(run: xr.Dataset) -> None:
     tight = str(run["span_tension"].mean("time").idxmax().item())
     assert f"Tight side: {tight}" in text
     pull = float(run["link_tension"].max())
+    assert 0.999 * pull <= run.attrs["link_tension_greatest"] < 1.1 * pull
+    pull = run.attrs["link_tension_greatest"]
     found = re.search(r"The hardest pulled link, .* bears ([\d.]+) (k?N);", text)
     assert found, text
     assert float(found[1]) * IN_SI[found[2]] == pytest.approx(pull, rel=1e-3)

@@ -55,14 +55,11 @@ def test_a_variant_is_the_run_of_its_drive(built_in):
         assert variant[name].dims == run[name].dims
         assert variant[name].attrs == run[name].attrs
     tension = run["span_tension"]
-    np.testing.assert_array_equal(variant["span_tension_max"], tension.max("time"))
-    # A sample stands for the time around it, the first one for half of that.
-    weights = np.ones(tension.sizes["time"])
-    weights[0] = 0.5
-    mean = np.average(tension, axis=0, weights=weights)
-    deviation = np.sqrt(np.average((tension - mean) ** 2, axis=0, weights=weights))
-    np.testing.assert_allclose(variant["span_tension_mean"], mean, rtol=1e-12)
-    np.testing.assert_allclose(variant["span_tension_std"], deviation, rtol=1e-6)
+    # Statistics are those of steps, whatever is sampled of them.
+    greatest = variant["span_tension_max"] / tension.max("time")
+    assert bool(((greatest >= 1.0 - 1e-6) & (greatest < 1.02)).all()), greatest
+    np.testing.assert_allclose(variant["span_tension_mean"], tension.mean("time"), rtol=0.01)
+    np.testing.assert_allclose(variant["span_tension_std"], tension.std("time"), rtol=0.05)
     assert variant["steps"] == run.attrs["steps"]
     assert variant["energy_dissipated_total"] == run.attrs["energy_dissipated"]
     assert built_in.attrs["method"] == run.attrs["method"]

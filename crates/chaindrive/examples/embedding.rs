@@ -81,11 +81,12 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let mut out = std::io::stdout();
     writeln!(out, "{told}, {}", report.verdict.written().verdict)?;
-    for span in &report.summary.spans {
+    let extremes = report.summary.span_extremes();
+    for (span, seen) in report.summary.spans.iter().zip(extremes) {
         writeln!(
             out,
             "{}: {:.0} to {:.0} N",
-            span.name, span.least, span.greatest
+            span.name, seen.least, seen.greatest
         )?;
     }
     Ok(())

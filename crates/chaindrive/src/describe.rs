@@ -30,7 +30,7 @@ pub use free_train::FreeTrainFacts;
 pub use links::{ContactFacts, LinkFacts, left_out};
 pub use oil::OilFacts;
 pub use polygon::PolygonPair;
-pub use route::{SpanAtRest, StopFacts, spans_at_rest};
+pub use route::{SpanAtRest, StopFacts, spans_at_rest, wraps};
 pub use stack::{StackFacts, StackTermFacts};
 pub use tolerance::ToleranceFacts;
 

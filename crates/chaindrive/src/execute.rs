@@ -7,6 +7,7 @@ use std::convert::Infallible;
 use chaindrive_mechanics::Drive;
 use serde_json::{Map, Value};
 
+use crate::describe::wraps;
 use crate::interruptible::{LOOK, assemble};
 use crate::precision::{Choice, Judgement, ShortRuns};
 use crate::record::{
@@ -16,7 +17,8 @@ use crate::run_in::Onlooker;
 use crate::scene::SceneError;
 use crate::summary::Summary;
 use crate::{
-    Channel, Request, Run, RunIn, RunInReport, Simulation, SimulationError, SnapshotError, Verdict,
+    ChainVerdict, Channel, Request, Run, RunIn, RunInReport, Simulation, SimulationError,
+    SnapshotError, Verdict,
 };
 
 use start::{RunState, Setup, not_started, short_runs};
@@ -267,9 +269,7 @@ fn complete<S: Sink>(
         &mut simulation,
         onlooker,
         |simulation| -> Result<(), S::Error> {
-            summary.push(simulation.observation());
-            summary.count(simulation.events());
-            summary.strike(simulation.impacts());
+            summary.take(simulation);
             sink.push(simulation)?;
             // Those that the run-in took are gone through in no time.
             if marks.pass(simulation) && !simulation.has_samples_ahead() {
@@ -291,6 +291,8 @@ fn complete<S: Sink>(
         }
         Ok(stop)
     });
+    // What is kept to go on from has no end of the account.
+    summary.end(&simulation);
     let mut stop = match carried {
         Ok(stop) => stop,
         Err(refused) => {
@@ -367,7 +369,10 @@ fn close<S: Sink>(
     judgement: Option<&Judgement>,
 ) -> Result<(Verdict, Map<String, Value>), S::Error> {
     let (ran_in, choice) = (provenance.ran_in.as_ref(), provenance.choice.as_ref());
-    let verdict = Verdict::of(summary, simulation, ran_in, choice, judgement);
+    let mut verdict = Verdict::of(summary, simulation, ran_in, choice, judgement);
+    let assembled = simulation.assembled();
+    let wraps = wraps(&assembled.drive, assembled);
+    verdict.chains = ChainVerdict::of(summary, simulation, &wraps);
     let attributes = attributes(
         provenance,
         simulation,
@@ -417,6 +422,7 @@ impl Simulation {
     /// [`RunError`] when the run cannot begin.
     pub fn of(request: &Request, onlooker: &dyn Onlooker) -> Result<Self, RunError<Infallible>> {
         let mut request = request.clone();
+        request.run.watched = false;
         if request.run.run_in == RunIn::Usual {
             request.run.run_in = RunIn::None;
         }

@@ -19,6 +19,7 @@
 //! ```
 
 pub mod catalogue;
+pub mod chain_verdict;
 pub mod channel;
 pub mod describe;
 pub mod design;
@@ -50,11 +51,12 @@ pub mod verdict;
 mod zarr;
 
 pub use catalogue::CatalogueChain;
+pub use chain_verdict::{ChainVerdict, CheckOutcome};
 pub use chaindrive_integrate::{InstructionSet, Method, Statistics};
 pub use chaindrive_mechanics::{
-    Assembled, Body, BodyKind, Clash, ContactEvent, ContactPair, Course, Drive, Energy, EventKinds,
-    Figure, FigureChain, Flow, Impact, Instant, MissingChannel, Mode, Modes, Observation,
-    Placement, PlateShape, Pose, Store,
+    Accounts, Assembled, Body, BodyKind, Clash, ContactEvent, ContactPair, Course, Drive,
+    DriveExtremes, Energy, EventKinds, Extremes, Figure, FigureChain, Flow, Impact, Instant,
+    MissingChannel, Mode, Modes, Observation, Placement, PlateShape, Pose, Source, Store,
 };
 pub use channel::{Axis, Channel};
 pub use describe::Description;
@@ -72,7 +74,7 @@ pub use run_in::{MOST_CIRCUITS, Onlooker, RunInReport, run_in};
 pub use scene::{RunIn, Scene};
 pub use seal::{SealError, SealedValue, opened, sealed};
 pub use sheet::aligned;
-pub use simulate::{Control, Simulation, Snapshot, SnapshotError, View, step_many};
+pub use simulate::{Control, Period, Simulation, Snapshot, SnapshotError, View, step_many};
 pub use stepping::Stepping;
 pub use summary::{ImpactStatistics, Summary};
 pub use terminal_text::plain;

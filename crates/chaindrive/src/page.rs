@@ -72,6 +72,7 @@ impl Page {
         let run = sections::PageContent {
             verdict,
             summary,
+            bodies: summary.bodies(),
             simulation,
             ran_in,
             judgement,

@@ -190,7 +190,9 @@ impl Rating {
             lubrication: (chain_speed > 0.0)
                 .then(|| Lubrication::at(load.pitch, chain_speed))
                 .flatten(),
-            static_safety: (load.tension > 0.0).then(|| over(load.tension)).flatten(),
+            static_safety: (load.tension.greatest > 0.0)
+                .then(|| over(load.tension.greatest))
+                .flatten(),
             dynamic_safety: steady.and_then(over),
             bearing_pressure: steady.zip(area).map(|(tension, area)| tension / area),
             shaft_loads: load.sprockets.iter().map(ShaftLoad::of).collect(),

@@ -15,8 +15,9 @@ use crate::{Channel, Run, SimulationError};
 
 pub use crate::event::{EventColumn, EventTable};
 pub use crate::summary::{
-    BearingForce, Bodies, ConfidenceInterval, ContactStatistics, ForceStatistics, ImpactStatistics,
-    Ledger, SampleStatistics, SpanStatistics, SprocketStatistics, Steadiness, Summary,
+    Balance, Bodies, ConfidenceInterval, ContactStatistics, ForceRecord, ForceStatistics,
+    ImpactStatistics, Ledger, SpanStatistics, SprocketStatistics, Steadiness, Summary,
+    TensionerStatistics,
 };
 pub use crate::zarr::{
     Claim, Ending, Existing, Object, Objects, WriteError, is_being_written, take_over,

@@ -37,6 +37,9 @@ pub struct Run {
     pub onset_depth: Option<f64>,
     /// Contacts to log; none cost nothing.
     pub events: EventKinds,
+    /// Whether steps are watched for the [periods](crate::Simulation::periods) of the account; if not, that costs nothing.
+    #[serde(default)]
+    pub watched: bool,
 }
 
 impl Default for Run {
@@ -50,6 +53,7 @@ impl Default for Run {
             tolerance: TOLERANCE,
             onset_depth: None,
             events: EventKinds::default(),
+            watched: false,
         }
     }
 }
@@ -95,6 +99,7 @@ impl Run {
             tolerance: by.tolerance.unwrap_or(default.tolerance),
             onset_depth: by.onset_depth,
             events: by.events,
+            watched: false,
         }
     }
 

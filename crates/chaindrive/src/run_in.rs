@@ -206,6 +206,7 @@ fn before(
     let silent = Run {
         run_in: RunIn::None,
         events: EventKinds::default(),
+        watched: false,
         ..run.clone()
     };
     Simulation::from_assembled(start, &silent)

@@ -2,6 +2,7 @@
 
 mod ended_contacts;
 mod live;
+mod periods;
 mod sample;
 mod snapshot;
 mod step_many;
@@ -44,6 +45,13 @@ pub struct Simulation {
     ended: [Vec<ContactEvent>; 2],
     /// Impacts of rollers that came to a sprocket, likewise.
     struck: [Vec<Impact>; 2],
+    /// Periods of the account that ended, and readings of the spans, likewise.
+    periods: [Vec<Period>; 2],
+    readings: [Vec<f64>; 2],
+    /// Numbers in one of these readings.
+    reading_length: usize,
+    /// Where the last of the periods ended.
+    period_end: PeriodEnd,
     /// The state before the last step, when that went beyond the time read: a change at that time begins from here.
     before: Option<Box<PreviousState>>,
     /// Samples that were taken before anybody asked for them.
@@ -81,6 +89,9 @@ impl Moving {
 
 use live::Changes;
 pub use live::Control;
+pub(crate) use periods::PRESSED;
+pub use periods::Period;
+use periods::PeriodEnd;
 pub(crate) use sample::Sample;
 use snapshot::PreviousState;
 pub use snapshot::{Snapshot, SnapshotError};
@@ -127,6 +138,7 @@ impl Simulation {
         system.set_onset_depth(run.onset_depth);
         system.log_events(run.events);
         system.forget_impacts();
+        system.watch(run.watched.then(|| periods::plan(&assembled, run)));
         // A run may be read at its very beginning.
         system.keep_forces_from(assembled.time);
         let stepper = method
@@ -134,7 +146,8 @@ impl Simulation {
             .map_err(|error| SimulationError::starting(error, run.stepping))?;
         let (dofs, rollers) = (state.q.len(), system.rollers());
         let record = system.new_record();
-        Ok(Self {
+        let reading_length = periods::reading_length(&system);
+        let mut simulation = Self {
             buffers: [
                 vec![0.0; dofs],
                 vec![0.0; dofs],
@@ -148,6 +161,10 @@ impl Simulation {
             },
             ended: Default::default(),
             struck: [(); 2].map(|()| Vec::with_capacity(rollers)),
+            periods: Default::default(),
+            readings: Default::default(),
+            reading_length,
+            period_end: PeriodEnd::default(),
             before: None,
             ahead: VecDeque::new(),
             read: assembled.time - assembled.zero,
@@ -160,7 +177,9 @@ impl Simulation {
             record,
             start_energy: None,
             stepping_time: 0.0,
-        })
+        };
+        simulation.open_account();
+        Ok(simulation)
     }
 
     /// Advances to the next sample; `None` once the end is reached.
@@ -286,7 +305,9 @@ impl Simulation {
     /// The drive at the end of the last step, open contacts included, as the start of another simulation.
     pub(crate) fn as_start(&self) -> Assembled {
         let Moving { system, state, .. } = &self.moving;
-        self.assembled.come_to(system.clone(), state)
+        let mut system = system.clone();
+        system.watch(None);
+        self.assembled.come_to(system, state)
     }
 
     /// The system in its present state.

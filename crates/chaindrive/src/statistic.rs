@@ -1,7 +1,9 @@
 //! Statistics: the numbers that sum up a run, each a line of one table with its name, unit, reader and description.
 
+use chaindrive_mechanics::Extremes;
+
 use crate::precision::{Choice, Promise};
-use crate::summary::{ContactStatistics, ImpactStatistics, SpanStatistics, Steadiness};
+use crate::summary::{ContactStatistics, ImpactStatistics, SprocketStatistics, Steadiness};
 use crate::{Simulation, Summary};
 
 /// Dimension of statistics by span.
@@ -19,12 +21,14 @@ enum Reader {
     Run(fn(&Simulation, &Summary) -> f64),
     /// A number of the choice of method and step.
     Choice(fn(&Simulation, &Choice) -> f64),
-    /// One a span.
-    Span(fn(&SpanStatistics) -> f64),
+    /// One a span, of all steps.
+    SpanSteps(fn(&Extremes) -> f64),
     /// One a span whose tension is known.
     Known(fn(&Steadiness) -> f64),
-    /// One a sprocket.
+    /// One a sprocket, of the impacts on it.
     Sprocket(fn(&ImpactStatistics) -> f64),
+    /// One a sprocket.
+    Body(fn(&SprocketStatistics) -> f64),
     /// One a kind of contact that is logged.
     Kind(fn(&ContactStatistics) -> f64),
 }
@@ -72,12 +76,23 @@ statistics! {
     SpanTensionP1HalfWidth, "span_tension_p1_half_width", "N", Known(|it| it.p1.half_width), "half width of its 95 % interval; NaN below three periods, and where they are too few to tell it";
     SpanTensionP99, "span_tension_p99", "N", Known(|it| it.p99.value), "tension that the span has less of in 99 % of the time";
     SpanTensionP99HalfWidth, "span_tension_p99_half_width", "N", Known(|it| it.p99.half_width), "half width of its 95 % interval; NaN below three periods, and where they are too few to tell it";
-    SpanTensionMin, "span_tension_min", "N", Span(|it| it.least), "least sample of the span tension";
-    SpanTensionMax, "span_tension_max", "N", Span(|it| it.greatest), "greatest sample of the span tension";
+    SpanTensionMin, "span_tension_min", "N", SpanSteps(|it| it.least), "least tension of the span over all steps";
+    SpanTensionMax, "span_tension_max", "N", SpanSteps(|it| it.greatest), "greatest tension of the span over all steps";
     ContactForceP50, "contact_force_p50", "N", Run(|_, it| it.forces().p50), "median of the forces of loaded rollers on teeth";
     ContactForceP90, "contact_force_p90", "N", Run(|_, it| it.forces().p90), "90th percentile of the forces of loaded rollers on teeth";
     ContactForceP99, "contact_force_p99", "N", Run(|_, it| it.forces().p99), "99th percentile of the forces of loaded rollers on teeth";
-    ContactForceMax, "contact_force_max", "N", Run(|_, it| it.forces().max), "largest sample of the forces of rollers on teeth";
+    ContactForceMax, "contact_force_max", "N", Run(|_, it| it.greatest_contact()), "greatest force of a roller on teeth over all steps";
+    LinkTensionMax, "link_tension_max", "N", Run(|_, it| it.link_tension().greatest), "greatest tension of a link over all steps";
+    LinkTensionMaxTime, "link_tension_max_time", "s", Run(|_, it| it.link_tension().greatest_at), "time at which a link had it";
+    LinkTensionMin, "link_tension_min", "N", Run(|_, it| it.link_tension().least), "least tension of a link over all steps; negative where it was pressed";
+    SprocketSpeedMean, "sprocket_speed_mean", "rad/s", Body(|it| it.speed), "mean speed of the sprocket: angle over time, of whole periods of the slowest forcing";
+    SprocketTorqueMean, "sprocket_torque_mean", "N m", Body(|it| it.torque), "mean torque of the chain on the sprocket: impulse over time";
+    SprocketPowerMean, "sprocket_power_mean", "W", Body(|it| it.power), "mean power of the chain on the sprocket: work over time";
+    BearingForceMean, "bearing_force_mean", "N", Body(|it| it.force.mean_polar()[0]), "magnitude of the mean force of the chain on the sprocket";
+    BearingForceMax, "bearing_force_max", "N", Body(|it| it.force.extremes.greatest), "greatest force of the chain on the sprocket over all steps";
+    BearingForceMaxTime, "bearing_force_max_time", "s", Body(|it| it.force.extremes.greatest_at), "time at which the sprocket had it";
+    SpeedIrregularity, "speed_irregularity", "1", Body(|it| it.speeds.range() / it.speed.abs()), "greatest less least speed of the sprocket over all steps, over the mean";
+    TransmissionErrorRange, "transmission_error_range", "rad", Body(|it| it.lag.range()), "greatest less least transmission error of the sprocket over all steps";
     ImpactCount, "impact_count", "1", Sprocket(|it| it.count as f64), "number of impacts of rollers that came to the sprocket";
     ImpactForceP50, "impact_force_p50", "N", Sprocket(|it| it.of_any(it.force(0.5))), "median of the largest forces of impacts";
     ImpactForceP99, "impact_force_p99", "N", Sprocket(ImpactStatistics::p99), "99th percentile of the largest forces of impacts; NaN below 100 impacts";
@@ -122,8 +137,8 @@ impl Statistic {
     pub fn along(self) -> Option<&'static str> {
         match self.reader() {
             Reader::Run(_) | Reader::Choice(_) => None,
-            Reader::Span(_) | Reader::Known(_) => Some(SPAN),
-            Reader::Sprocket(_) => Some(SPROCKET),
+            Reader::SpanSteps(_) | Reader::Known(_) => Some(SPAN),
+            Reader::Sprocket(_) | Reader::Body(_) => Some(SPROCKET),
             Reader::Kind(_) => Some(KIND),
         }
     }
@@ -155,7 +170,15 @@ impl Statistic {
         match self.reader() {
             Reader::Run(of) => vec![of(simulation, summary)],
             Reader::Choice(of) => vec![choice.map_or(f64::NAN, |it| of(simulation, it))],
-            Reader::Span(of) => summary.spans.iter().map(|it| finite(of(it))).collect(),
+            Reader::SpanSteps(of) => summary
+                .span_extremes()
+                .iter()
+                .map(|it| finite(of(it)))
+                .collect(),
+            Reader::Body(of) => {
+                let sprockets = summary.bodies().sprockets;
+                sprockets.iter().map(|it| finite(of(it))).collect()
+            }
             Reader::Known(of) => {
                 let spans = summary.steadiness().into_iter();
                 spans.map(|it| it.map_or(f64::NAN, |it| of(&it))).collect()

@@ -1,35 +1,46 @@
 //! The short account that ends every run.
 
+mod account;
 mod blocks;
 mod bodies;
 mod chain_duties;
 mod impacts;
+mod ledger;
 mod steadiness;
 mod value_counts;
 
-use chaindrive_mechanics::{ContactEvent, Energy, Flow, Impact, Observation, Place};
+use chaindrive_mechanics::{ContactEvent, Energy, Extremes, Flow, Impact, Observation, Place};
 use hdrhistogram::Histogram;
 use serde::{Deserialize, Serialize};
 
 use crate::Simulation;
 use crate::event::{EventTable, kind};
 use crate::rating::{Load, Rating};
+use account::Account;
+pub use account::Balance;
 use blocks::Blocks;
-pub use bodies::{BearingForce, Bodies, SampleStatistics, SprocketStatistics};
+use bodies::BodyNames;
+pub use bodies::{Bodies, ForceRecord, SprocketStatistics, TensionerStatistics};
 use chain_duties::ChainDuties;
 pub use impacts::ImpactStatistics;
+pub use ledger::Ledger;
+use ledger::Turnover;
 pub use steadiness::{ConfidenceInterval, Steadiness};
 pub(crate) use steadiness::{DRIFT, drift};
 
-/// Collects statistics sample by sample, in bounded memory.
+/// Collects statistics of a [watched](crate::Run::watched) run, in bounded memory.
+///
+/// Means of work and extremes are those of steps; statistics of span tensions those of readings between steps that the tooth of the fastest
+/// sprocket sets. None of them knows the interval of the samples. Energies are those of samples.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Summary {
     /// Spans of the route.
     pub spans: Vec<SpanStatistics>,
     /// Period of the slowest forcing \[s\]; infinite where nothing repeats.
     period: f64,
-    /// Time of the first sample \[s\].
+    /// Time of the first sample, and of the first reading of the spans \[s\].
     began: Option<f64>,
+    first_reading: Option<f64>,
     #[serde(with = "value_counts")]
     forces: Histogram<u64>,
     largest_force: f64,
@@ -47,7 +58,8 @@ pub struct Summary {
     /// Whether the samples are kept; otherwise only the summary is made of them.
     pub kept: bool,
     carried: ChainDuties,
-    bodies: Bodies,
+    names: BodyNames,
+    account: Account,
     /// Time of the last sample \[s\].
     ended: f64,
 }
@@ -57,12 +69,12 @@ pub struct Summary {
 pub struct SpanStatistics {
     /// Name, "from-to".
     pub name: String,
-    /// Least and greatest sample \[N\].
-    pub least: f64,
-    /// See `least`.
-    pub greatest: f64,
     blocks: Blocks,
-    /// Samples without a tension, because no roller holds the span.
+    /// The last reading: since when it counts, when it was, and the tension; counted from the first reading.
+    pending: Option<[f64; 3]>,
+    /// Readings, and those without a tension, because no roller holds the span.
+    pub readings: u64,
+    /// See `readings`.
     pub missing: u64,
 }
 
@@ -70,6 +82,28 @@ impl SpanStatistics {
     /// Time mean \[N\], of whole periods of the slowest forcing where there are three of them; NaN without a sample.
     pub fn mean(&self) -> f64 {
         self.blocks.mean()
+    }
+
+    /// Takes in the tension at a time \[s\] counted from the first reading. A reading stands for the time from half-way after the one before it to
+    /// half-way before the next.
+    fn push(&mut self, time: f64, tension: f64) {
+        self.readings += 1;
+        self.missing += u64::from(!tension.is_finite());
+        let mut since = time;
+        if let Some([from, read, before]) = self.pending {
+            since = 0.5 * (read + time);
+            if before.is_finite() {
+                self.blocks.push([from, since], before);
+            }
+        }
+        self.pending = Some([since, time, tension]);
+    }
+
+    /// The last reading stands for the time up to the end \[s\], counted from the first.
+    fn end(&mut self, time: f64) {
+        if let Some([from, _, tension]) = self.pending.take().filter(|it| it[2].is_finite()) {
+            self.blocks.push([from, time.max(from)], tension);
+        }
     }
 }
 
@@ -113,168 +147,6 @@ impl ContactStatistics {
     }
 }
 
-/// The energy of a run, and what of it is unaccounted for.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Ledger {
-    /// Largest residual in magnitude \[J\].
-    pub residual: f64,
-    /// Energy lost \[J\].
-    pub losses: f64,
-    /// Energy that has changed its form or owner \[J\].
-    pub moved: f64,
-    /// Energy that drivers, motions, torques and loads have put in, those that took some out left aside \[J\].
-    pub supplied: f64,
-    /// Energy that those have taken out that took more than they put in \[J\].
-    pub delivered: f64,
-    /// The most that those who put it in had taken back of it at any moment \[J\].
-    pub supplied_back: f64,
-    /// The most that those who took it out had given back of it at any moment \[J\].
-    pub delivered_back: f64,
-    /// Energy that they have put in and taken out again, added up without regard to direction \[J\].
-    pub exchanged: f64,
-    /// Energy that loads have put in, those that took some out counted against it \[J\].
-    pub by_loads: f64,
-    /// Energy that loads have put in and taken out, added up without regard to direction \[J\].
-    pub loads_exchanged: f64,
-    /// Largest kinetic energy \[J\].
-    pub kinetic: f64,
-    /// Residual that rounding may leave \[J\].
-    pub rounding: f64,
-}
-
-/// Uncertainty of an efficiency, by where within a swing the record ends, beyond which there is none. *Assumed*.
-const TO_AND_FRO: f64 = 0.1;
-/// Share of the energy supplied that somebody has to take out before the rest of it is an efficiency. *Assumed*: less is rounding and
-/// the run-up, and what a drive that serves nobody keeps in its motion is not its use.
-const TAKEN: f64 = 1e-6;
-
-impl Ledger {
-    /// Share of the energy supplied that is not lost, and how uncertain it is; none where [`unknown`](Self::unknown) says why.
-    ///
-    /// ```text
-    /// η = 1 − D/E ± (|R| + B D/E)/E       D: losses, R: residual, E: energy supplied, B: what its suppliers had taken back at most
-    /// ```
-    ///
-    /// E is a net: what the springs of valves give back over the cams, and a crank takes back, has not been supplied, and what it costs to move it
-    /// to and fro is lost. A record that ends within a swing has up to B more or less in E.
-    pub fn efficiency(&self) -> Option<[f64; 2]> {
-        let share = |of: f64| of / self.supplied;
-        self.unknown().is_none().then(|| {
-            let uncertain = share(self.residual.abs()) + self.by_swings();
-            [1.0 - share(self.losses), uncertain]
-        })
-    }
-
-    /// Uncertainty of the efficiency by what its suppliers take back and put in anew: B D/E².
-    fn by_swings(&self) -> f64 {
-        self.supplied_back / self.supplied * self.losses / self.supplied
-    }
-
-    /// Why there is no efficiency, in words; none where there is one.
-    pub fn unknown(&self) -> Option<&'static str> {
-        // What a spring takes and gives back is not taken out, wherever the record ends.
-        let swings = self.by_swings() > TO_AND_FRO || self.delivered_back > self.delivered;
-        if self.supplied <= 0.0 {
-            Some("nobody puts energy in")
-        } else if self.idles() {
-            Some("nobody takes energy out")
-        } else if swings {
-            Some("too much energy goes to and fro for this record: take a longer one")
-        } else {
-            None
-        }
-    }
-
-    /// Whether nothing takes energy out: all that is supplied is lost, or stays in motion, height and springs.
-    fn idles(&self) -> bool {
-        self.delivered <= TAKEN * self.supplied
-    }
-}
-
-/// Energy that a run has moved about.
-///
-/// Net work is no measure for that: a driver that reverses takes back what it gave, and a chain that
-/// swings or spins freely is given nothing at all.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct Turnover {
-    /// Σ |ΔW| over all flows and samples \[J\].
-    flowed: f64,
-    /// The same over flows that are no losses \[J\].
-    exchanged: f64,
-    /// The same over loads alone \[J\].
-    loads: f64,
-    /// Work of every flow that is no loss.
-    works: Vec<Swing>,
-    /// Least and greatest kinetic and stored energy \[J\].
-    ranges: Option<[[f64; 2]; 2]>,
-}
-
-/// Work since the start, and how much of it has gone back.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-struct Swing {
-    /// The work now, and its least and greatest value so far \[J\].
-    work: f64,
-    least: f64,
-    greatest: f64,
-    /// The most that it has been below the greatest and above the least value before \[J\].
-    fall: f64,
-    rise: f64,
-}
-
-impl Swing {
-    fn push(&mut self, work: f64) {
-        self.work = work;
-        self.least = self.least.min(work);
-        self.greatest = self.greatest.max(work);
-        self.fall = self.fall.max(self.greatest - work);
-        self.rise = self.rise.max(work - self.least);
-    }
-}
-
-impl Turnover {
-    fn push(&mut self, start: &Energy, before: &Energy, now: &Energy) {
-        let worked = |flow: &Flow| (now.flow(*flow) - before.flow(*flow)).abs();
-        self.flowed += Flow::ALL.iter().map(worked).sum::<f64>();
-        let outside = Flow::ALL.iter().filter(|flow| !flow.is_loss());
-        self.exchanged += outside.clone().map(worked).sum::<f64>();
-        self.works.resize(outside.clone().count(), Swing::default());
-        for (swing, &flow) in self.works.iter_mut().zip(outside) {
-            swing.push(now.flow(flow) - start.flow(flow));
-        }
-        self.loads += worked(&Flow::Load);
-        let stores = [now.kinetic(), now.stored()];
-        let ranges = self.ranges.get_or_insert(stores.map(|energy| [energy; 2]));
-        for (range, energy) in ranges.iter_mut().zip(stores) {
-            *range = [range[0].min(energy), range[1].max(energy)];
-        }
-    }
-
-    /// Half the flows, for what comes in goes out again, or the greatest change of a store \[J\].
-    fn moved(&self) -> f64 {
-        let ranges = self.ranges.unwrap_or_default();
-        ranges
-            .iter()
-            .map(|[least, greatest]| greatest - least)
-            .fold(0.5 * self.flowed, f64::max)
-    }
-
-    /// Largest kinetic energy \[J\].
-    fn kinetic(&self) -> f64 {
-        let [[_, greatest], _] = self.ranges.unwrap_or_default();
-        greatest
-    }
-
-    /// Residual that rounding may leave \[J\].
-    fn rounding(&self) -> f64 {
-        let ranges = self.ranges.unwrap_or_default();
-        let largest = ranges
-            .iter()
-            .flatten()
-            .fold(0.0, |m: f64, e| m.max(e.abs()));
-        ROUNDING * largest
-    }
-}
-
 /// Forces are counted in millinewtons, to three digits.
 const COUNTS_PER_NEWTON: f64 = 1e3;
 
@@ -285,21 +157,25 @@ fn histogram() -> Histogram<u64> {
 
 impl Summary {
     /// Share of the greatest span tension by which a link has to be pressed to count as pressed. *Assumed*: less is the swing of its own mass.
-    pub const PRESSED: f64 = 0.05;
+    pub const PRESSED: f64 = crate::simulate::PRESSED;
 
     /// An empty summary for a run.
     pub fn new(simulation: &Simulation) -> Self {
-        let period = simulation.assembled().slowest_forcing();
+        let plan = simulation.system().watch_plan();
+        let forcing = || simulation.assembled().slowest_forcing();
+        let period = plan.map_or_else(forcing, |plan| plan.period);
+        let interval = plan.map_or(f64::INFINITY, |plan| plan.interval);
         let span = |name| SpanStatistics {
             name,
-            least: f64::INFINITY,
-            greatest: f64::NEG_INFINITY,
-            blocks: Blocks::new(simulation.every(), period),
+            blocks: Blocks::new(interval, period),
+            pending: None,
+            readings: 0,
             missing: 0,
         };
         Self {
             period,
             began: None,
+            first_reading: None,
             spans: simulation
                 .system()
                 .span_names()
@@ -318,23 +194,52 @@ impl Summary {
             samples: 0,
             kept: false,
             carried: ChainDuties::new(simulation),
-            bodies: Bodies::new(&simulation.assembled().drive),
+            names: BodyNames::new(&simulation.assembled().drive),
+            account: Account::default(),
             ended: f64::NAN,
         }
     }
 
-    /// Takes in one sample.
-    pub fn push(&mut self, sample: &Observation) {
-        let time = sample.time - *self.began.get_or_insert(sample.time);
-        for (span, &tension) in self.spans.iter_mut().zip(&sample.span_tension) {
-            if tension.is_finite() {
-                span.least = span.least.min(tension);
-                span.greatest = span.greatest.max(tension);
-                span.blocks.push(time, tension);
-            } else {
-                span.missing += 1;
-            }
+    /// Takes in a sample, and what steps have ended since the one before.
+    pub fn take(&mut self, simulation: &Simulation) {
+        self.push(simulation.observation());
+        self.count(simulation.events());
+        self.strike(simulation.impacts());
+        for reading in simulation.span_readings() {
+            self.read(reading);
         }
+        for period in simulation.periods() {
+            self.account.push(period);
+        }
+    }
+
+    /// Ends with what steps have ended since the last sample, up to the end of the run or as far as it has come.
+    pub fn end(&mut self, simulation: &Simulation) {
+        for reading in simulation.outstanding_span_readings() {
+            self.read(&reading);
+        }
+        let end = simulation.time() - self.first_reading.unwrap_or_default();
+        for span in &mut self.spans {
+            span.end(end);
+        }
+        self.account
+            .end(simulation.outstanding_periods(), self.period);
+    }
+
+    /// Takes in a reading of the spans: time \[s\], tension of every span \[N\], number of pressed links of every chain.
+    pub fn read(&mut self, reading: &[f64]) {
+        let (time, rest) = (reading[0], &reading[1..]);
+        let (tensions, pressed) = rest.split_at(self.spans.len());
+        let first = *self.first_reading.get_or_insert(time);
+        for (span, tension) in self.spans.iter_mut().zip(tensions) {
+            span.push(time - first, *tension);
+        }
+        self.carried.push(pressed);
+    }
+
+    /// Takes in one sample alone: its forces and energies.
+    pub fn push(&mut self, sample: &Observation) {
+        self.began.get_or_insert(sample.time);
         let mut numbers = sample.link_tension.iter().chain(&sample.contact_force);
         if !numbers.all(|number| number.is_finite()) {
             self.not_finite += 1;
@@ -351,8 +256,6 @@ impl Summary {
             self.residual = residual;
         }
         self.last = sample.energy;
-        self.carried.push(sample);
-        self.bodies.push(sample);
         self.ended = sample.time;
         self.samples += 1;
     }
@@ -474,6 +377,11 @@ impl Summary {
         }
     }
 
+    /// Energies of whole periods of the slowest forcing, or of all of a shorter record; none before the run has [ended](Self::end).
+    pub fn balance(&self) -> Option<Balance> {
+        self.account.balance()
+    }
+
     /// Energy lost since the start \[J\].
     pub fn energy_dissipated(&self) -> f64 {
         self.last.dissipated() - self.start.unwrap_or_default().dissipated()
@@ -494,14 +402,37 @@ impl Summary {
         self.ended - self.began.unwrap_or(f64::NAN)
     }
 
-    /// Loads of the bodies that the chains touch.
-    pub fn bodies(&self) -> &Bodies {
-        &self.bodies
+    /// Loads of the bodies that the chains touch; none before the run has [ended](Self::end).
+    pub fn bodies(&self) -> Bodies {
+        self.names.bodies(&self.account)
+    }
+
+    /// Greatest force of one roller on teeth over all steps \[N\]; zero where nothing touched.
+    pub fn greatest_contact(&self) -> f64 {
+        let extremes = self.account.extremes().unwrap_or_default();
+        let contacts = extremes.sprockets.iter().map(|it| it.contact.greatest);
+        contacts.fold(0.0, f64::max)
+    }
+
+    /// Least and greatest tension of a link of any chain over all steps \[N\].
+    pub fn link_tension(&self) -> Extremes {
+        let extremes = self.account.extremes().unwrap_or_default();
+        let mut all = Extremes::default();
+        extremes.chains.iter().for_each(|it| all.take(it));
+        all
+    }
+
+    /// Least and greatest tension of every span over all steps \[N\], where a roller held it.
+    pub fn span_extremes(&self) -> Vec<Extremes> {
+        let seen = self.account.extremes().map(|it| it.spans);
+        seen.unwrap_or_else(|| vec![Extremes::default(); self.spans.len()])
     }
 
     /// Duty of each chain.
     pub fn carried(&self) -> Vec<Load> {
-        self.carried.loads(&self.spans, &self.bodies.sprockets)
+        let extremes = self.account.extremes().unwrap_or_default();
+        self.carried
+            .loads(&self.spans, &self.bodies().sprockets, &extremes.chains)
     }
 
     /// Ratings of the chains, beside the loads of the run.
@@ -511,9 +442,6 @@ impl Summary {
 
     /// Greatest frequency at which rollers seat on a sprocket, in the mean over the run \[Hz\].
     pub fn mesh_frequency(&self) -> f64 {
-        self.bodies.mesh_frequency()
+        self.bodies().mesh_frequency()
     }
 }
-
-/// Share of the energy present below which a residual is taken for rounding. *Assumed*: the last digits of many steps add up.
-const ROUNDING: f64 = 1e-9;

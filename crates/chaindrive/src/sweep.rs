@@ -149,6 +149,10 @@ pub enum SweepError {
 }
 
 /// Outcome of a variant.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "most variants of a sweep are done"
+)]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Outcome {
     /// Not yet, or not at all because the sweep was stopped.

@@ -16,6 +16,7 @@ use std::fmt::{self, Write as _};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use crate::chain_verdict::{ChainVerdict, WrittenChainVerdict};
 use crate::precision::{Choice, Estimate, Judgement, LEAST_LOSSES, Promise};
 use crate::sheet::{NAMES, aligned};
 use crate::summary::{Ledger, Steadiness, Summary};
@@ -55,6 +56,8 @@ pub struct Verdict {
     pub reasons: Vec<Reason>,
     /// Remarks for the reader that do not speak against the result.
     pub notes: Vec<Reason>,
+    /// The verdict on the chains themselves, once the run has ended.
+    pub chains: ChainVerdict,
 }
 
 /// A verdict in the words of results.
@@ -66,6 +69,9 @@ pub struct WrittenVerdict {
     pub reasons: String,
     /// The attribute `verdict_note`: the reasons in words, the notes after them.
     pub note: String,
+    /// The verdict on the chains.
+    #[serde(default)]
+    pub chains: WrittenChainVerdict,
 }
 
 impl WrittenVerdict {
@@ -89,7 +95,7 @@ const WRONG_LOSSES: f64 = 0.5;
 const MOST_EFFICIENCY: f64 = 1.0 + WRONG_LOSSES * LEAST_LOSSES;
 /// Steps below which the error of the first one is all that a ledger shows. *Assumed*.
 const LEAST_STEPS: u64 = 32;
-/// Share of the samples without a tension above which the statistics of a span are not those of the run: most of it is missing.
+/// Share of the time without a tension above which the statistics of a span are not those of the run: most of it is missing.
 const UNHELD: f64 = 0.5;
 /// Share of a mean below which the start of a run does not count. *Assumed*: below what anybody reads off a tension.
 const LEAST_SHIFT: f64 = 0.01;
@@ -107,11 +113,6 @@ const LEAST_SAMPLES: f64 = 2.0;
 const DRIVES: f64 = 0.25;
 /// Share of the energy moved below which it does not matter who drives. *Assumed*.
 const MATTERS: f64 = 0.01;
-
-/// Distance of the planes of two sprockets over that of their shafts that makers allow, and in fast drives: SEDIS, *Transmission chains*,
-/// 0.2 % and 0.1 %. Which drive is fast they do not say.
-pub(crate) const ALIGNED: f64 = 2e-3;
-pub(crate) const ALIGNED_FAST: f64 = 1e-3;
 
 impl Verdict {
     /// The verdict on a run that ended: by its samples, how it was run in, the estimate of its error, and the choice of its
@@ -153,6 +154,7 @@ impl Verdict {
             trust,
             reasons,
             notes,
+            chains: ChainVerdict::default(),
         }
     }
 
@@ -168,6 +170,7 @@ impl Verdict {
             verdict: self.trust.name().to_owned(),
             reasons: names.join(" "),
             note: self.note(),
+            chains: self.chains.written(),
         }
     }
 
@@ -178,6 +181,7 @@ impl Verdict {
         story.text("verdict", &written.verdict);
         story.text("reasons", &written.reasons);
         story.text("verdict_note", &written.note);
+        story.0.extend(self.chains.attributes());
         story.0
     }
 
@@ -297,13 +301,13 @@ fn ledger(ledger: &Ledger, steps: u64) -> Vec<Reason> {
 }
 
 fn spans(summary: &Summary) -> impl Iterator<Item = Reason> {
-    let samples = summary.samples.max(1) as f64;
     summary
         .spans
         .iter()
         .filter(|span| span.missing > 0)
-        .map(move |span| {
-            let (span, share) = (span.name.clone(), span.missing as f64 / samples);
+        .map(|span| {
+            let share = span.missing as f64 / span.readings as f64;
+            let span = span.name.clone();
             if share > UNHELD {
                 Reason::SpanRarelyHeld { span, share }
             } else {

@@ -79,6 +79,10 @@ pub(crate) enum Failure {
     #[error("{scene}: distrusted, and --strict was asked for")]
     Distrusted { scene: String },
 
+    /// The chain is too weak, and the user wants to be told by the exit code; what it exceeds is out.
+    #[error("{scene}: the chain fails, and --strict was asked for")]
+    Overloaded { scene: String },
+
     /// The user stopped the run.
     #[error("interrupted")]
     Interrupted,
@@ -167,7 +171,8 @@ impl Failure {
             }
             Self::Start { scene, .. }
             | Self::Simulation { scene, .. }
-            | Self::Distrusted { scene } => Some(scene.clone()),
+            | Self::Distrusted { scene }
+            | Self::Overloaded { scene } => Some(scene.clone()),
             Self::File { path, .. } | Self::Taken { path, .. } => Some(path.clone()),
             Self::Write(WriteError::Io { path, .. }) => Some(path.display().to_string()),
             _ => None,
@@ -194,6 +199,7 @@ impl Failure {
             | Self::Sweep(_) => BAD_INPUT,
             Self::Write(_) | Self::File { .. } | Self::Taken { .. } => 3,
             Self::Distrusted { .. } => 4,
+            Self::Overloaded { .. } => 5,
             Self::Interrupted => crate::INTERRUPTED,
         }
     }

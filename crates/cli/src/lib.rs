@@ -9,6 +9,7 @@
 //! | 2 | bad input; nothing was written |
 //! | 3 | the result could not be written |
 //! | 4 | `--strict` was asked for, and the verdict on the result is `distrusted` |
+//! | 5 | `--strict=chain` or `--strict=all` was asked for, and the verdict on the chain is `fail` |
 //! | 130 | interrupted; a result keeps the samples or variants so far and says so |
 
 mod answer;
@@ -45,6 +46,7 @@ Exit codes:
   2    bad input; nothing was written
   3    the result could not be written
   4    --strict was asked for, and the verdict on the result is distrusted
+  5    --strict=chain was asked for, and the verdict on the chain is fail
   130  interrupted; a result keeps the samples or variants so far and says so";
 
 /// Simulates roller chain drives that are described in scene files.

@@ -21,6 +21,7 @@ pub(crate) use shafts::{Shaft, Turn, TurnedBy};
 pub(crate) use slide::Slide;
 pub(crate) use surroundings::Surroundings;
 
+use crate::accounts::AccountSizes;
 use crate::contact::Frame;
 use crate::kinematics::Kinematics;
 use crate::seam::Rates;
@@ -46,6 +47,8 @@ pub(crate) struct Bodies {
     pub(crate) rates: [f64; 2],
     /// Inputs from outside.
     pub(crate) inputs: Inputs,
+    /// Accounts that are kept.
+    pub(crate) accounts: AccountSizes,
 }
 
 /// A sprocket in the system.

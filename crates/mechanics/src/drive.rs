@@ -75,7 +75,7 @@ impl Shaft {
     }
 
     /// All torques on it.
-    pub(crate) fn torques(&self) -> impl Iterator<Item = &Torque> {
+    pub fn torques(&self) -> impl Iterator<Item = &Torque> {
         let [drive, load]: [&[Torque]; 2] = match &self.rotation {
             Rotation::Prescribed(_) => [&[], &[]],
             Rotation::Free { drive, load, .. } => [drive, load],
@@ -436,6 +436,38 @@ pub struct Drive {
     pub(crate) parts: Parts,
     /// Time at which it is assembled \[s\], 0 or before.
     pub(crate) begin: f64,
+}
+
+impl Parts {
+    /// The sprocket that leads the chain of one, by index, and the exact ratio to it: the first of the route whose motion is given, or else the first
+    /// of all. A sprocket that no route passes leads itself.
+    pub fn leader(&self, sprocket: usize) -> (usize, f64) {
+        let routes = self
+            .chains
+            .iter()
+            .filter_map(|placed| match &placed.layout {
+                Layout::Route { stops, .. } => Some(stops.iter().filter_map(|stop| match stop {
+                    Stop::Sprocket(index) => Some(*index),
+                    Stop::Guide(_) => None,
+                })),
+                Layout::Points { .. } => None,
+            });
+        let mut routes = routes.map(Iterator::collect::<Vec<_>>);
+        let Some(route) = routes.find(|route| route.contains(&sprocket)) else {
+            return (sprocket, 1.0);
+        };
+        let is_given = |it: &&usize| {
+            let shaft = &self.shafts[self.sprockets[**it].shaft];
+            matches!(shaft.rotation, Rotation::Prescribed(_))
+        };
+        let first = *route.iter().find(is_given).unwrap_or(&route[0]);
+        // i = ± z₀/z
+        let signed = |it: usize| {
+            let sprocket = &self.sprockets[it];
+            f64::from(sprocket.gap.teeth) * sprocket.side.sense()
+        };
+        (first, signed(first) / signed(sprocket))
+    }
 }
 
 impl Drive {

@@ -79,6 +79,16 @@ impl Assembled {
             .fold(0.0, f64::max)
     }
 
+    /// Shortest time \[s\] between two teeth of a sprocket at its mean speed; infinite where none turns.
+    pub fn fastest_tooth(&self) -> f64 {
+        let speeds = self.mean_speeds();
+        let wheels = self.system.bodies.wheels.iter().zip(speeds);
+        // t = 2π/(z ω)
+        wheels
+            .map(|(wheel, speed)| (TAU / (f64::from(wheel.teeth) * speed)).abs())
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// In words, the first thing that acts as a function of time, such as a ramp: its times are those of the record, and a run-in without a
     /// set length would move it. None where all that acts repeats with the turns of a shaft, or stays.
     pub fn function_of_time(&self) -> Option<&'static str> {

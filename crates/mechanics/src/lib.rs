@@ -100,6 +100,7 @@
 //! # }
 //! ```
 
+mod accounts;
 mod alignment;
 mod applied;
 mod articulation;
@@ -143,7 +144,11 @@ mod torque;
 mod trains;
 mod twin_start;
 mod warming;
+mod watch;
 
+pub use accounts::{
+    Accounts, GuideAccount, ShaftAccount, Source, SprocketAccount, TensionerAccount,
+};
 pub use alignment::Alignment;
 pub use articulation::{Articulation, LateralRub};
 pub use assembly::{Assembled, Fitting, FreeTrain, Gap, RollerLayout, Statics};
@@ -184,6 +189,7 @@ pub use tooth_stack::{
 };
 pub use torque::{Argument, Torque};
 pub use warming::warming;
+pub use watch::{DriveExtremes, Extremes, SprocketExtremes, WatchPlan};
 
 /// Hash of the sources of this crate, a part of the identity of a build.
 #[doc(hidden)]

@@ -203,7 +203,7 @@ impl System {
         if evaluates {
             let mut reading = std::mem::take(&mut record.reading);
             reading.a.resize(self.dofs, 0.0);
-            let states = Flow::ALL.len() + self.bodies.states;
+            let states = self.quadratures() + self.bodies.states;
             reading.rates.resize(states, 0.0);
             self.evaluate(at, &mut reading.a, &mut reading.rates, record);
             record.reading = reading;
@@ -388,26 +388,24 @@ impl System {
             let links = member.chain.links();
             let teeth = member.contacts.teeth.iter();
             seats.clear();
-            seats.extend(teeth.map(|on| self.seated(member, on, first_roller, seated, out)));
-            let seat_on = |wheel: usize| {
-                let on = member
-                    .contacts
-                    .teeth
-                    .iter()
-                    .position(|on| on.wheel == wheel);
-                on.and_then(|on| seats[on])
-            };
+            for on in teeth {
+                let [x, y] = [out.sprocket_x[on.wheel], out.sprocket_y[on.wheel]];
+                let place = |i: usize| {
+                    let i = first_roller + i;
+                    Point::new(out.roller_x[i], out.roller_y[i])
+                };
+                seats.push(self.seated(member, on, seated, Point::new(x, y), place));
+            }
             for i in 0..member.route.len() {
-                let next = (i + 1) % member.route.len();
-                let tension = match (seat_on(member.route[i]), seat_on(member.route[next])) {
-                    (Some((_, last)), Some((first, _))) => {
+                let tension = match member.span_ends(seats, i) {
+                    Some((last, first)) => {
                         let count = (first + rollers - last) % rollers;
                         let sum: f64 = (0..count)
                             .map(|k| out.link_tension[first_link + (last + k) % links])
                             .sum();
                         sum / count.max(1) as f64
                     }
-                    _ => f64::NAN,
+                    None => f64::NAN,
                 };
                 out.span_tension.push(tension);
             }
@@ -417,26 +415,21 @@ impl System {
     }
 
     /// First and last roller, in path order, that lie on a sprocket: on its pitch circle, or as far outside as wear
-    /// lifts the chain.
-    fn seated(
+    /// lifts the chain. `place`: where the rollers of the chain are.
+    pub(crate) fn seated(
         &self,
         member: &Member,
         on: &WheelContacts,
-        first_roller: usize,
         seated: &mut Vec<usize>,
-        out: &Observation,
+        centre: Point,
+        place: impl Fn(usize) -> Point,
     ) -> Option<(usize, usize)> {
-        let centre = Point::new(out.sprocket_x[on.wheel], out.sprocket_y[on.wheel]);
         let rollers = member.chain.rollers();
         let pitch = member.chain.pitch();
         // Half a pitch along the tangent a roller is p²/8R outside the circle on which it rides.
         let circle = member.riding_radius(&self.bodies.wheels[on.wheel]);
         let reach = circle + pitch * pitch / (8.0 * circle);
-        let on_circle = |i: &usize| {
-            let i = first_roller + i;
-            let d = Point::new(out.roller_x[i], out.roller_y[i]) - centre;
-            d.norm_squared() < reach * reach
-        };
+        let on_circle = |i: &usize| (place(*i) - centre).norm_squared() < reach * reach;
         seated.clear();
         on.contacts.for_each_slot(|_, roller| seated.push(roller));
         seated.sort_unstable();
@@ -484,7 +477,7 @@ impl System {
     /// The energy ledger of a state that `record` was evaluated at.
     fn energy(&self, at: Moment<'_>, flows: &[f64], record: &Record) -> Energy {
         let mut energy = Energy::default();
-        energy.flows.copy_from_slice(flows);
+        energy.flows.copy_from_slice(&flows[..Flow::ALL.len()]);
         let bodies = &self.bodies;
         for (flow, jumps) in [Flow::Driver, Flow::DriveTorque]
             .into_iter()

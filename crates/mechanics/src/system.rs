@@ -12,6 +12,7 @@ mod member;
 mod memory;
 mod offset_spans;
 mod solve;
+mod watching;
 
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{
@@ -28,6 +29,7 @@ use crate::contact::Wrench;
 use crate::energy::Flow;
 use crate::seam::{EventLog, Rates};
 use crate::tensioner::Slopes;
+use crate::watch::Watch;
 
 pub(crate) use build::{LaidChain, LaidDrive};
 pub(crate) use group::Group;
@@ -53,6 +55,8 @@ pub struct System {
     onset_depth: Option<f64>,
     /// Time at which it was assembled \[s\].
     pub(crate) begin: f64,
+    /// The watch on its steps, where one is kept.
+    pub(crate) watch: Option<Box<Watch>>,
 }
 
 /// Results of one evaluation: contact states, work space and loads of the bodies.
@@ -213,7 +217,7 @@ impl System {
             member.renew_windows(&self.bodies, Moment { t, q, v, z }, record);
         }
         let mut a = vec![0.0; self.dofs];
-        let mut rates = vec![0.0; Flow::ALL.len() + self.bodies.states];
+        let mut rates = vec![0.0; self.quadratures() + self.bodies.states];
         self.evaluate(Moment { t, q, v, z }, &mut a, &mut rates, &mut record);
         self.commit(t, q, v, &mut record);
     }
@@ -399,6 +403,8 @@ fn take(sum: &mut Wrench, wrench: &Wrench, first: bool) {
         sum.force = wrench.force;
         sum.moment = wrench.moment;
         sum.depth = wrench.depth;
+        sum.normal_loss = wrench.normal_loss;
+        sum.friction_loss = wrench.friction_loss;
         return;
     }
     for axis in 0..2 {
@@ -406,6 +412,8 @@ fn take(sum: &mut Wrench, wrench: &Wrench, first: bool) {
     }
     sum.moment += wrench.moment;
     sum.depth = sum.depth.max(wrench.depth);
+    sum.normal_loss += wrench.normal_loss;
+    sum.friction_loss += wrench.friction_loss;
 }
 
 impl SecondOrderSystem for System {
@@ -428,7 +436,7 @@ impl SecondOrderSystem for System {
     }
 
     fn quadratures(&self) -> usize {
-        Flow::ALL.len()
+        Flow::ALL.len() + self.bodies.accounts.length()
     }
 
     fn states(&self) -> usize {
@@ -473,6 +481,10 @@ impl SecondOrderSystem for System {
         if self.applied.wants(t) {
             self.note_applied(Moment { t, q, v, z: &[] }, end);
         }
+        if let Some(mut watch) = self.watch.take() {
+            watch.see(self, Moment { t, q, v, z: &[] }, end);
+            self.watch = Some(watch);
+        }
         for (member, record) in self.chains.iter_mut().zip(&mut end.chains) {
             member.commit(t, record, &self.bodies);
         }
@@ -485,6 +497,10 @@ impl SecondOrderSystem for System {
         self.note_events(t);
         for (member, record) in self.chains.iter_mut().zip(&mut end.chains) {
             member.look_around(&self.bodies, Moment { t, q, v, z: &[] }, record);
+        }
+        if let Some(mut watch) = self.watch.take() {
+            watch.look(self, Moment { t, q, v, z: &[] }, end);
+            self.watch = Some(watch);
         }
         if self.take_due(t, q, v) {
             Continuity::Jump

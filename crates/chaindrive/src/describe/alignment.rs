@@ -6,7 +6,7 @@ use chaindrive_mechanics::Parts;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::verdict::{ALIGNED, ALIGNED_FAST};
+use crate::chain_verdict::{ALIGNED, ALIGNED_FAST};
 
 /// A span out of line.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]

@@ -163,6 +163,13 @@ fn name<'d>(drive: &'d Drive, stop: &Stop) -> &'d str {
     }
 }
 
+/// Wraps of the sprockets \[rad\], in the order of the drive; none of those that no route passes.
+pub fn wraps(drive: &Drive, assembled: &Assembled) -> Vec<Option<f64>> {
+    let stops = stops(drive, assembled, &at_start(assembled));
+    let wrap = |name: &String| stops.iter().find(|it| it.name == *name)?.wrap;
+    drive.sprockets.iter().map(|it| wrap(&it.name)).collect()
+}
+
 /// The bodies of the routes.
 pub(super) fn stops(drive: &Drive, assembled: &Assembled, start: &Observation) -> Vec<StopFacts> {
     let runs = runs(drive, assembled);

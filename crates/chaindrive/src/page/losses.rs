@@ -8,15 +8,15 @@ use crate::figure::{Measure, figure};
 
 impl PageContent<'_> {
     pub(super) fn losses(&self) -> Section {
-        let lost = self.summary.losses();
-        let time = self.summary.duration();
         let mut section = Section::new("losses", "place\tpower [W]\tshare [%]");
-        let all = self.summary.energy_dissipated();
-        if !lost.is_empty() && time > 0.0 {
-            let names = lost.iter().map(|(place, lost)| (place.name(), *lost));
+        let balance = self.summary.balance();
+        if let Some(balance) = balance.filter(|it| !it.losses.is_empty() && it.time > 0.0) {
+            let all = balance.lost();
+            let places = balance.losses.iter();
+            let names = places.map(|(place, lost)| (place.name(), *lost));
             for (place, lost) in names.chain(std::iter::once(("all", all))) {
                 let share = format!("{:.1}", 100.0 * lost / all);
-                let power = figure(lost / time);
+                let power = figure(lost / balance.time);
                 section.rows.push(vec![place.to_owned(), power, share]);
             }
         }
@@ -26,25 +26,30 @@ impl PageContent<'_> {
         section
     }
 
-    /// Power that comes in, goes out and is lost, by the energy of the whole record.
+    /// Power that comes in, goes out and is lost, over whole periods of the slowest forcing where there is one.
     fn balance(&self) -> Option<String> {
-        let (ledger, time) = (self.summary.ledger(), self.summary.duration());
-        if !(time > 0.0 && ledger.supplied > 0.0) {
+        let balance = self.summary.balance()?;
+        if !(balance.time > 0.0 && balance.supplied > 0.0) {
             return None;
         }
-        let told = |energy: f64| Measure::Power.told(energy / time);
-        let rest = ledger.supplied - ledger.delivered - ledger.losses;
-        let way = if rest < 0.0 {
+        let told = |energy: f64| Measure::Power.told(energy / balance.time);
+        let kept = balance.kept();
+        let way = if kept < 0.0 {
             "came out of"
         } else {
             "went into"
         };
+        let over = if balance.is_whole {
+            "Over whole periods of the slowest forcing"
+        } else {
+            "Over the record, which is no whole period"
+        };
         Some(format!(
-            "Put in {}, taken out {}, lost {}; {} {way} motion, height and springs, with what is unaccounted for.",
-            told(ledger.supplied),
-            told(ledger.delivered),
-            told(ledger.losses),
-            told(rest.abs())
+            "{over}: put in {}, taken out {}, lost {}; {} {way} motion, height and springs, with what is unaccounted for.",
+            told(balance.supplied),
+            told(balance.delivered),
+            told(balance.lost()),
+            told(kept.abs())
         ))
     }
 
@@ -58,7 +63,7 @@ impl PageContent<'_> {
                 ""
             };
             return format!(
-                "Efficiency, 1 less the share that is lost: {:.3} % ± {:.3} % by the energy unaccounted for{swings}.",
+                "Efficiency, 1 less the share that is lost: {:.1} % ± {:.1} % numerical, by the energy unaccounted for{swings}; friction is as uncertain as its coefficient.",
                 100.0 * efficiency,
                 100.0 * uncertain
             );
@@ -73,12 +78,13 @@ impl PageContent<'_> {
             return None;
         };
         let inside = [Place::Joints, Place::Rollers, Place::Seals, Place::Offset];
-        let lost = self.summary.losses().into_iter();
+        let balance = self.summary.balance()?;
+        let lost = balance.losses.iter();
         let lost: f64 = lost
             .filter(|(place, _)| inside.contains(place))
             .map(|(_, lost)| lost)
             .sum();
-        let power = lost / self.summary.duration();
+        let power = lost / balance.time;
         let [from, to] = warming(&placed.chain, power, self.chain_speed(0)?)?;
         (power > 0.0).then(|| {
             format!(

@@ -3,11 +3,14 @@
 use super::{Section, error_by_step};
 use std::f64::consts::TAU;
 
+use chaindrive_mechanics::Extremes;
+
+use crate::chain_verdict::{Check, CheckOutcome};
 use crate::describe::left_out;
 use crate::figure::{Measure, Scale, duration, figure, percent};
 use crate::precision::Judgement;
 use crate::rating::{Load, Rating};
-use crate::summary::{BearingForce, SprocketStatistics, Steadiness, Summary};
+use crate::summary::{Bodies, ForceRecord, SprocketStatistics, Steadiness, Summary};
 use crate::{RunInReport, Simulation, Verdict};
 
 /// Share of the greatest power of its chain below which a sprocket idles. *Assumed*: bearings and teeth of an idler take less.
@@ -33,6 +36,7 @@ const ROUNDING: f64 = 1e-6;
 pub(super) struct PageContent<'a> {
     pub(super) verdict: &'a Verdict,
     pub(super) summary: &'a Summary,
+    pub(super) bodies: Bodies,
     pub(super) simulation: &'a Simulation,
     pub(super) ran_in: Option<&'a RunInReport>,
     pub(super) judgement: Option<&'a Judgement>,
@@ -43,6 +47,7 @@ impl PageContent<'_> {
     pub(super) fn sections(&self) -> Vec<Section> {
         vec![
             self.verdict(),
+            self.chain_verdict(),
             self.record(),
             self.drive(),
             self.spans(),
@@ -61,6 +66,34 @@ impl PageContent<'_> {
         let title = format!("verdict: {}", self.verdict.trust.name());
         let mut section = Section::new(&title, "");
         section.sentences = self.verdict.sentences();
+        section
+    }
+
+    /// What the chains are held against, the worst first.
+    fn chain_verdict(&self) -> Section {
+        let chains = &self.verdict.chains;
+        let title = format!("verdict on the chain: {}", chains.outcome().name());
+        let mut section = Section::new(&title, "limit\tvalue\tbounds\tunit\toutcome");
+        for check in &chains.checks {
+            let of = after(" of ", &check.of);
+            section.rows.push(vec![
+                format!("{}{of}", check.limit.name()),
+                check.told_value(),
+                check.told_bounds(),
+                check.limit.unit().to_owned(),
+                check.outcome.name().to_owned(),
+            ]);
+        }
+        let worst = chains.reasons().map(Check::to_string);
+        let unjudged = chains
+            .checks
+            .iter()
+            .filter(|it| it.outcome == CheckOutcome::NotJudged);
+        let sentence = |words: String| words[..1].to_uppercase() + &words[1..] + ".";
+        section.sentences.extend(worst.map(sentence));
+        section
+            .sentences
+            .extend(unjudged.map(|it| sentence(it.to_string())));
         section
     }
 
@@ -94,10 +127,10 @@ impl PageContent<'_> {
 
     /// Power, torque, speed and ratio of every sprocket; which sides are tight.
     fn drive(&self) -> Section {
-        let sprockets = &self.summary.bodies().sprockets;
-        let turning = Measure::Turning.scale(sprockets.iter().map(|it| it.speed.mean()));
-        let torques = Measure::Torque.scale(sprockets.iter().map(|it| it.torque.mean()));
-        let powers = Measure::Power.scale(sprockets.iter().map(|it| it.power.mean()));
+        let sprockets = &self.bodies.sprockets;
+        let turning = Measure::Turning.scale(sprockets.iter().map(|it| it.speed));
+        let torques = Measure::Torque.scale(sprockets.iter().map(|it| it.torque));
+        let powers = Measure::Power.scale(sprockets.iter().map(|it| it.power));
         let [speed, torque, power] = [turning, torques, powers].map(|it| it.unit);
         let columns = format!(
             "sprocket\trole\tteeth\tspeed [{speed}]\ttorque [{torque}]\tpower [{power}]\tratio"
@@ -105,19 +138,19 @@ impl PageContent<'_> {
         let mut section = Section::new("what the drive does", &columns);
         for it in sprockets {
             let leader = &sprockets[it.leader()];
-            let ratio = it.speed.mean() / leader.speed.mean();
+            let ratio = it.speed / leader.speed;
             section.rows.push(vec![
                 it.name.clone(),
                 self.role(it).to_owned(),
                 it.teeth.to_string(),
-                turning.cell(it.speed.mean()),
-                torques.cell(it.torque.mean().abs()),
-                powers.cell(it.power.mean().abs()),
+                turning.cell(it.speed),
+                torques.cell(it.torque.abs()),
+                powers.cell(it.power.abs()),
                 figure(ratio),
             ]);
         }
         section.sentences.extend(self.chain_speeds());
-        let speeds: Vec<f64> = sprockets.iter().map(|it| it.speed.mean()).collect();
+        let speeds: Vec<f64> = sprockets.iter().map(|it| it.speed).collect();
         let against = self.simulation.assembled().drive.against_routes(&speeds);
         let against = against.iter().map(ToString::to_string);
         section.sentences.extend(against);
@@ -145,11 +178,11 @@ impl PageContent<'_> {
 
     /// Mean speed of a chain \[m/s\], where it passes a sprocket.
     pub(super) fn chain_speed(&self, index: usize) -> Option<f64> {
-        let sprockets = &self.summary.bodies().sprockets;
+        let sprockets = &self.bodies.sprockets;
         let first = sprockets.iter().find(|it| it.chain == index)?;
         let pitch = self.simulation.assembled().drive.chains[index].chain.pitch;
         // v = z p ω/2π
-        Some(f64::from(first.teeth) * pitch * first.speed.mean().abs() / TAU)
+        Some(f64::from(first.teeth) * pitch * first.speed.abs() / TAU)
     }
 
     /// Links, pitch and speed of every chain.
@@ -172,10 +205,10 @@ impl PageContent<'_> {
 
     /// Part of a sprocket in its chain: it drives, is driven or idles.
     fn role(&self, sprocket: &SprocketStatistics) -> &'static str {
-        let sprockets = self.summary.bodies().sprockets.iter();
+        let sprockets = self.bodies.sprockets.iter();
         let own = sprockets.filter(|it| it.chain == sprocket.chain);
-        let greatest = own.map(|it| it.power.mean().abs()).fold(0.0, f64::max);
-        let power = sprocket.power.mean();
+        let greatest = own.map(|it| it.power.abs()).fold(0.0, f64::max);
+        let power = sprocket.power;
         if power.abs() <= IDLES * greatest {
             "idles"
         } else if power < 0.0 {
@@ -201,14 +234,15 @@ impl PageContent<'_> {
     /// Tensions of the spans, with intervals.
     fn spans(&self) -> Section {
         let spans = &self.summary.spans;
-        let scale = Measure::Force.scale(spans.iter().flat_map(|it| [it.least, it.greatest]));
+        let extremes = self.summary.span_extremes();
+        let scale = Measure::Force.scale(extremes.iter().flat_map(|it| [it.least, it.greatest]));
         let columns = "mean\t± 95 %\tstd\t± 95 %\tp1\t± 95 %\tp99\t± 95 %\tleast\tgreatest";
         let columns = format!("span tension [{}]\t{columns}", scale.unit);
         let mut section = Section::new("span tensions", &columns);
-        let samples = self.summary.samples;
-        for (span, known) in spans.iter().zip(self.summary.steadiness()) {
+        let known = spans.iter().zip(self.summary.steadiness());
+        for ((span, known), extremes) in known.zip(extremes) {
             let Some(known) = known else {
-                let sentence = format!("No roller holds span {} in any sample.", span.name);
+                let sentence = format!("No roller ever holds span {}.", span.name);
                 section.sentences.push(sentence);
                 continue;
             };
@@ -216,12 +250,14 @@ impl PageContent<'_> {
             for it in [known.mean, known.deviation, known.p1, known.p99] {
                 row.extend([scale.cell(it.value), half_width(&scale, it.half_width)]);
             }
-            row.extend([span.least, span.greatest].map(|it| scale.cell(it)));
+            row.extend([extremes.least, extremes.greatest].map(|it| scale.cell(it)));
             section.rows.push(row);
             if span.missing > 0 {
-                let (name, missing) = (&span.name, span.missing);
+                let share = span.missing as f64 / span.readings as f64;
                 section.sentences.push(format!(
-                    "No roller holds span {name} in {missing} of {samples} samples."
+                    "No roller holds span {} in {} of the time.",
+                    span.name,
+                    percent(share)
                 ));
             }
         }
@@ -248,32 +284,43 @@ impl PageContent<'_> {
     fn links(&self) -> Section {
         let mut section = Section::new("links", "");
         let loads = self.summary.carried().into_iter();
-        let loads = loads.filter(|it| it.tension.is_finite());
+        let loads = loads.filter(|it| it.tension.greatest.is_finite());
         section.sentences.extend(loads.map(|it| strength(&it)));
         section
     }
 
     fn bearings(&self) -> Section {
-        let bodies = self.summary.bodies();
+        let bodies = &self.bodies;
         let sprockets = bodies.sprockets.iter().map(|it| (&it.name, &it.force));
         let guides = bodies.guides.iter().map(|(name, force)| (name, force));
-        let all: Vec<(String, &BearingForce)> = sprockets
+        let all: Vec<(String, &ForceRecord)> = sprockets
             .map(|(name, force)| (name.clone(), force))
             .chain(guides.map(|(name, force)| (format!("guide {name}"), force)))
             .collect();
-        let scale = Measure::Force.scale(all.iter().map(|(_, it)| it.magnitude.greatest));
+        let scale = Measure::Force.scale(all.iter().map(|(_, it)| it.extremes.greatest));
         let unit = scale.unit;
-        let columns = format!("on\tmean [{unit}]\tdirection from x [deg]\tgreatest [{unit}]");
+        let greatest = format!("greatest [{unit}]\tat [s]\tof a period, median [{unit}]\t± 95 %");
+        let columns = format!("on\tmean [{unit}]\tdirection from x [deg]\t{greatest}");
         let mut section = Section::new("bearing and guide forces", &columns);
         for (name, force) in all {
-            let [mean, direction] = force.mean();
+            let [mean, direction] = force.mean_polar();
             let direction = if mean > 0.0 {
                 format!("{:.1}", direction.to_degrees())
             } else {
                 "–".to_owned()
             };
-            let [mean, greatest] = [mean, force.magnitude.greatest].map(|it| scale.cell(it));
-            section.rows.push(vec![name, mean, direction, greatest]);
+            let [mean, greatest] = [mean, force.extremes.greatest].map(|it| scale.cell(it));
+            let at = if force.extremes.greatest > 0.0 {
+                figure(force.extremes.greatest_at)
+            } else {
+                "–".to_owned()
+            };
+            let usual = force.usual_greatest;
+            let usual = usual.map_or(["–".to_owned(), "–".to_owned()], |it| {
+                [scale.cell(it.value), half_width(&scale, it.half_width)]
+            });
+            let row = [name, mean, direction, greatest, at].into_iter();
+            section.rows.push(row.chain(usual).collect());
         }
         section
     }
@@ -313,15 +360,16 @@ impl PageContent<'_> {
     fn tensioners(&self) -> Section {
         let columns = "tensioner\tunit\tmean\tleast\tgreatest\ttravel";
         let mut section = Section::new("tensioners", columns);
-        for (name, unit, [travel, _]) in &self.summary.bodies().tensioners {
-            let quantity = if unit == "rad" {
+        for it in &self.bodies.tensioners {
+            let travel = &it.travel;
+            let quantity = if it.unit == "rad" {
                 Measure::Angle
             } else {
                 Measure::Length
             };
             let scale = quantity.scale([travel.least, travel.greatest]);
-            let values = [travel.mean(), travel.least, travel.greatest, travel.range()];
-            let mut row = vec![name.clone(), scale.unit.to_owned()];
+            let values = [it.mean, travel.least, travel.greatest, travel.range()];
+            let mut row = vec![it.name.clone(), scale.unit.to_owned()];
             row.extend(values.map(|it| figure(it / scale.per)));
             section.rows.push(row);
         }
@@ -333,10 +381,9 @@ impl PageContent<'_> {
         let columns =
             "sprocket\tspeed, greatest less least [%]\ttransmission error, peak to peak [deg]";
         let mut section = Section::new("speed irregularity and transmission error", columns);
-        for (index, it) in self.summary.bodies().sprockets.iter().enumerate() {
-            let mean = it.speed.mean();
+        for (index, it) in self.bodies.sprockets.iter().enumerate() {
             // δ = (ω_max − ω_min)/ω̄
-            let irregularity = it.speed.range() / mean.abs();
+            let irregularity = it.speeds.range() / it.speed.abs();
             if !irregularity.is_finite() {
                 continue;
             }
@@ -416,19 +463,22 @@ fn half_width(scale: &Scale, value: f64) -> String {
 /// The hardest pulled link of a chain, against what breaks it.
 fn strength(load: &Load) -> String {
     let of = after(" of ", &load.chain);
-    let pull = Measure::Force.told(load.tension);
+    let Extremes {
+        least, greatest, ..
+    } = load.tension;
+    let pull = Measure::Force.told(greatest);
     let breaks = match load.strength.breaking_load {
         Some(breaking) => format!(
             "the chain breaks at {}, {} times that",
             Measure::Force.told(breaking),
-            figure(breaking / load.tension)
+            figure(breaking / greatest)
         ),
         None => "no breaking load is known: give chain.breaking_load".to_owned(),
     };
-    let pressed = if load.pressed > 0.0 && -load.least > ROUNDING * load.tension {
+    let pressed = if load.pressed > 0.0 && -least > ROUNDING * greatest {
         format!(
             " Links are pressed by up to {}, in {} of links and time.",
-            Measure::Force.told(-load.least),
+            Measure::Force.told(-least),
             percent(load.pressed)
         )
     } else {

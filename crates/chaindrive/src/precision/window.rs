@@ -69,6 +69,7 @@ impl Window {
             until: self.until,
             every: self.every,
             events: EventKinds::default(),
+            watched: false,
             ..run.clone()
         }
     }

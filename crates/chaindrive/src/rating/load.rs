@@ -1,6 +1,6 @@
 //! Load of a chain in a run, for its rating.
 
-use chaindrive_mechanics::Strength;
+use chaindrive_mechanics::{Extremes, Strength};
 
 /// Share of the power of a chain that a sprocket takes part with, at least; idlers do not.
 const TAKES_PART: f64 = 0.1;
@@ -12,11 +12,9 @@ pub struct Load {
     pub chain: String,
     /// Its strength, as far as that is known.
     pub strength: Strength,
-    /// Greatest tension of a link \[N\].
-    pub tension: f64,
-    /// Least tension of a link \[N\].
-    pub least: f64,
-    /// Share of links and samples in which a link was pressed by more than `Summary::PRESSED` of the greatest span tension
+    /// Extremes of the tension of its links over all steps \[N\].
+    pub tension: Extremes,
+    /// Share of links and readings in which a link was pressed by more than `Summary::PRESSED` of the greatest span tension
     /// at that time \[–\]; 0 without spans.
     pub pressed: f64,
     /// Mean power that it has carried to or from a sprocket \[W\].

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use chaindrive_mechanics::PowerLimits;
+use chaindrive_mechanics::{Extremes, PowerLimits};
 
 use super::*;
 
@@ -40,8 +40,11 @@ fn load(strength: Strength) -> Load {
     Load {
         chain: String::new(),
         strength,
-        tension: 8.1e3,
-        least: 0.0,
+        tension: Extremes {
+            least: 0.0,
+            greatest: 8.1e3,
+            ..Extremes::default()
+        },
         pressed: 0.0,
         power: 15e3,
         pitch: 0.0254,

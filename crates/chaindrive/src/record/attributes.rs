@@ -130,13 +130,21 @@ pub fn attributes(
         if let Some(why) = ledger.unknown() {
             story.text("efficiency_unknown", why);
         }
+        if summary.slowest_forcing().is_finite() {
+            story.number("slowest_forcing", summary.slowest_forcing());
+        }
         let ratings = summary.ratings();
         let one = ratings.len() == 1;
         for it in &ratings {
             rating(&mut story, it, one);
         }
         story.number("energy_residual_largest", summary.residual);
-        story.number("contact_force_largest", summary.forces().max);
+        story.number("contact_force_largest", summary.greatest_contact());
+        let links = summary.link_tension();
+        if links.greatest.is_finite() {
+            story.number("link_tension_greatest", links.greatest);
+            story.number("link_tension_greatest_at", links.greatest_at);
+        }
         for it in summary.impacts().iter().filter(|it| it.count > 0) {
             for (statistic, value) in Statistic::of_impacts(it) {
                 let name = format!("{}_{}", statistic.name(), it.sprocket);

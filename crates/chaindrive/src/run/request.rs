@@ -34,7 +34,10 @@ impl Request {
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, RequestError> {
         let scene = settings.put(scene)?;
         let wanted = scene.run_defaults();
-        let run = Run::suggested(&wanted);
+        let run = Run {
+            watched: true,
+            ..Run::suggested(&wanted)
+        };
         run.check()?;
         Channel::check(&wanted.record)?;
         let accuracy = wanted.chosen_accuracy();

@@ -134,6 +134,7 @@ impl Simulation {
                 }
                 self.moving.keep_forces_for(time);
                 self.moving.step()?;
+                self.end_periods();
             }
         }
         self.stepping_time += begin.elapsed().as_secs_f64();

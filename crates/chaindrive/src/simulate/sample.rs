@@ -4,7 +4,7 @@ use chaindrive_mechanics::{Assembled, ContactEvent, EventKinds, Impact, Observat
 
 use super::ended_contacts::count_from;
 use super::live::Changes;
-use super::{Arc, Simulation};
+use super::{Arc, Period, Simulation};
 use crate::interruptible::LOOK;
 use crate::{Run, SimulationError};
 
@@ -14,6 +14,8 @@ pub(crate) struct Sample {
     observation: Observation,
     ended: Vec<ContactEvent>,
     struck: Vec<Impact>,
+    periods: Vec<Period>,
+    readings: Vec<f64>,
 }
 
 impl Simulation {
@@ -42,6 +44,7 @@ impl Simulation {
             let mut system = it.system;
             // Whoever begins there says what is logged.
             system.log_events(EventKinds::default());
+            system.watch(None);
             self.assembled.come_to(system, &it.state)
         });
         self.sample(time);
@@ -49,6 +52,8 @@ impl Simulation {
             observation: self.observation.clone(),
             ended: self.ended[0].clone(),
             struck: self.struck[0].clone(),
+            periods: self.periods[0].clone(),
+            readings: self.readings[0].clone(),
         };
         Ok((sample, start))
     }
@@ -122,5 +127,23 @@ impl Simulation {
         }
         // Those before the record are not of it.
         struck.retain(|it| it.time >= 0.0);
+        // The period in which the record begins has begun less than a sample before it.
+        let begin = -self.every;
+        let periods = &mut self.periods[0];
+        *periods = sample.periods;
+        for it in periods.iter_mut() {
+            it.count_from(zero);
+        }
+        periods.retain(|it| it.time[0] > begin);
+        self.readings[0].clear();
+        let length = self.reading_length;
+        for row in sample.readings.chunks_exact(length) {
+            let time = row[0] - zero;
+            if time > begin {
+                let readings = &mut self.readings[0];
+                readings.push(time);
+                readings.extend(&row[1..]);
+            }
+        }
     }
 }

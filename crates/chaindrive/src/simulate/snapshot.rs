@@ -9,7 +9,7 @@ use chaindrive_mechanics::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::{Moving, Simulation};
+use super::{Moving, Period, PeriodEnd, Simulation};
 use crate::seal::{SealedValue, opened, sealed};
 use crate::{SealError, SimulationError};
 
@@ -42,6 +42,9 @@ pub struct Snapshot {
     /// Handed out at the last reading, and since then.
     ended: [Vec<ContactEvent>; 2],
     struck: [Vec<Impact>; 2],
+    periods: [Vec<Period>; 2],
+    readings: [Vec<f64>; 2],
+    period_end: PeriodEnd,
     before: Option<PreviousState>,
     /// Time reached \[s\].
     time: f64,
@@ -63,8 +66,9 @@ struct DriveMemory {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct PreviousState {
     moving: DriveMemory,
-    /// Contacts and impacts that had ended since the last reading.
-    pub(super) gathered: [usize; 2],
+    /// What had been gathered since the last reading, and where the last period had ended.
+    pub(super) gathered: [usize; 4],
+    period_end: PeriodEnd,
     /// Time of the first event after it \[s\].
     event: f64,
     /// Plans made since then.
@@ -78,6 +82,7 @@ impl PreviousState {
         Self {
             moving: moving.remembered(),
             gathered: simulation.gathered(),
+            period_end: simulation.period_end.clone(),
             event: moving.system.next_event(moving.state.t),
             planned: Vec::new(),
         }
@@ -140,6 +145,9 @@ impl Simulation {
             moving: self.moving.remembered(),
             ended: self.ended.clone(),
             struck: self.struck.clone(),
+            periods: self.periods.clone(),
+            readings: self.readings.clone(),
+            period_end: self.period_end.clone(),
             before: self.before.as_deref().cloned(),
             time: self.time(),
             read: self.read,
@@ -160,7 +168,12 @@ impl Simulation {
         let moving = self.recalled(&snapshot.moving)?;
         if let Some(before) = &snapshot.before {
             self.recalled(&before.moving)?;
-            let all = [snapshot.ended[1].len(), snapshot.struck[1].len()];
+            let all = [
+                snapshot.ended[1].len(),
+                snapshot.struck[1].len(),
+                snapshot.periods[1].len(),
+                snapshot.readings[1].len(),
+            ];
             if before.gathered.iter().zip(all).any(|(own, all)| *own > all) {
                 return Err(SnapshotError::Other);
             }
@@ -169,6 +182,9 @@ impl Simulation {
         self.moving = moving;
         self.ended.clone_from(&snapshot.ended);
         self.struck.clone_from(&snapshot.struck);
+        self.periods.clone_from(&snapshot.periods);
+        self.readings.clone_from(&snapshot.readings);
+        self.period_end = snapshot.period_end.clone();
         self.ahead.clear();
         self.read = snapshot.read;
         self.next = snapshot.next;
@@ -186,12 +202,16 @@ impl Simulation {
     pub(super) fn go_back(&mut self, before: PreviousState) -> Result<(), SimulationError> {
         let PreviousState {
             moving: then,
-            gathered: [contacts, impacts],
+            gathered: [contacts, impacts, periods, readings],
+            period_end,
             event,
             planned,
         } = before;
         self.ended[1].truncate(contacts);
         self.struck[1].truncate(impacts);
+        self.periods[1].truncate(periods);
+        self.readings[1].truncate(readings);
+        self.period_end = period_end;
         let own = "the memory is of this drive";
         if event > self.moving.state.t {
             // Nothing was set in that step, and all else is memory.
@@ -210,6 +230,7 @@ impl Simulation {
         let mut system = self.assembled.system.clone();
         system.set_onset_depth(self.moving.system.onset_depth());
         system.log_events(self.events);
+        system.watch(self.moving.system.watch_plan().cloned());
         system.remember(then.system.clone())?;
         if let Some(record) = then.stepper.record() {
             system.check_record(record)?;

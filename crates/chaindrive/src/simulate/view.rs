@@ -128,6 +128,7 @@ impl Simulation {
             moving.system.keep_forces_from(from);
             moving.step()?;
         }
+        self.end_periods();
         self.gather();
         if steps > 0 {
             self.read = self.time();

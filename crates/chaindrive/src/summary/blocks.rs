@@ -4,7 +4,7 @@
 //! period: a mean over m + ½ periods of amplitude A errs by A/(π m), where the mean over m periods does not err at all. So samples go into
 //! blocks of whole periods, and what fills none is left out once there are three. When there are many blocks, neighbours are joined.
 //!
-//! A sample stands for the time from half a step before it to half a step after it. Where a block ends within, both get their share.
+//! A value stands for some time. Where a block ends within, both get their share.
 
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,7 @@ const BINS: usize = 256;
 /// Samples of one quantity, in blocks of equal length.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Blocks {
-    /// Time between two samples, and length of a block \[s\].
+    /// Time between two values, about, and length of a block \[s\].
     every: f64,
     length: f64,
     full: Vec<Block>,
@@ -73,8 +73,8 @@ impl Blocks {
         }
     }
 
-    /// Takes in the value at a time \[s\] counted from the first sample.
-    pub(crate) fn push(&mut self, time: f64, value: f64) {
+    /// Takes in a value that stands for a time \[s\], counted from the first.
+    pub(crate) fn push(&mut self, [mut from, to]: [f64; 2], value: f64) {
         let origin = *self.origin.get_or_insert(value);
         let value = value - origin;
         while let Some(joined) = self.grid.without_room(value) {
@@ -82,7 +82,6 @@ impl Blocks {
             blocks.for_each(|block| block.rebin(&self.grid, &joined));
             self.grid = joined;
         }
-        let (mut from, to) = ((time - 0.5 * self.every).max(0.0), time + 0.5 * self.every);
         loop {
             let edge = (self.closed + 1) as f64 * self.length;
             let until = to.min(edge);
@@ -304,12 +303,17 @@ mod tests {
 
     use super::*;
 
+    /// The time that a sample stands for.
+    fn around(time: f64, every: f64) -> [f64; 2] {
+        [(time - 0.5 * every).max(0.0), time + 0.5 * every]
+    }
+
     fn wave(periods: f64, samples: u32) -> Blocks {
         let every = periods / f64::from(samples);
         let mut blocks = Blocks::new(every, 1.0);
         for i in 0..=samples {
             let time = f64::from(i) * every;
-            blocks.push(time, 100.0 + 10.0 * (TAU * time + 0.4).sin());
+            blocks.push(around(time, every), 100.0 + 10.0 * (TAU * time + 0.4).sin());
         }
         blocks
     }
@@ -349,7 +353,7 @@ mod tests {
         ] {
             let mut blocks = Blocks::new(1.0, f64::INFINITY);
             for (i, value) in values.iter().enumerate() {
-                blocks.push(i as f64, *value);
+                blocks.push(around(i as f64, 1.0), *value);
             }
             let [mean, _, p1, p99] = blocks.statistics().unwrap().values;
             let least = values.iter().copied().fold(f64::INFINITY, f64::min);

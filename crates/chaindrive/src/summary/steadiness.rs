@@ -297,9 +297,10 @@ mod tests {
     /// Of values that are one apart; what repeats has a period of so many.
     fn of(values: impl Iterator<Item = f64>, period: f64, scale: f64) -> Steadiness {
         let mut blocks = Blocks::new(1.0, period);
-        values
-            .enumerate()
-            .for_each(|(i, value)| blocks.push(i as f64, value));
+        values.enumerate().for_each(|(i, value)| {
+            let i = i as f64;
+            blocks.push([(i - 0.5).max(0.0), i + 0.5], value);
+        });
         blocks.steadiness(scale).unwrap()
     }
 

@@ -93,11 +93,17 @@ pub(super) fn texts(
     let mut chunk = vec![blank(name).to_owned(); layout.block()];
     for ((_, local), outcome) in region.variants.iter().zip(outcomes) {
         let of_variant = match outcome {
-            Outcome::Done(Account { verdict, .. }) => {
-                [&verdict.verdict, &verdict.reasons, &verdict.note, ""]
-            }
-            Outcome::Failed(message) => ["", "", "", message],
-            Outcome::Open => ["", "", "", OPEN],
+            Outcome::Done(Account { verdict, .. }) => [
+                &verdict.verdict,
+                &verdict.reasons,
+                &verdict.note,
+                &verdict.chains.verdict,
+                &verdict.chains.reasons,
+                &verdict.chains.note,
+                "",
+            ],
+            Outcome::Failed(message) => ["", "", "", "", "", "", message],
+            Outcome::Open => ["", "", "", "", "", "", OPEN],
         };
         index
             .map_or("", |index| of_variant[index])

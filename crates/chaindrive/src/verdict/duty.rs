@@ -1,10 +1,10 @@
 //! Limits of a real drive that a run exceeds, and requests that were probably not meant.
 
 use chaindrive_contact::dissipation::FASTEST_IMPACT;
-use chaindrive_mechanics::{BodyImpacts, MissingRating, Parts};
+use chaindrive_mechanics::BodyImpacts;
 
-use super::{ALIGNED, DRIVES, LEAST_SAMPLES, MATTERS, Reason};
-use crate::rating::{Load, Rating};
+use super::{DRIVES, LEAST_SAMPLES, MATTERS, Reason};
+use crate::rating::Load;
 use crate::summary::Ledger;
 use crate::{Simulation, Summary};
 
@@ -13,14 +13,10 @@ pub(super) fn found(summary: &Summary, simulation: &Simulation) -> Vec<Reason> {
     let mut reasons = Vec::new();
     let loads = summary.carried();
     reasons.extend(loads.iter().filter_map(broken));
-    let ratings = summary.ratings();
-    reasons.extend(ratings.iter().filter_map(overloaded));
-    reasons.extend(ratings.iter().filter_map(unrated));
     reasons.extend(loads.iter().filter_map(pressed));
     let struck = simulation.system().struck();
     reasons.extend(deepest(&struck));
     reasons.extend(fastest(&struck));
-    reasons.extend(out_of_line(&simulation.assembled().drive));
     reasons.extend(load_that_drives(&summary.ledger()));
     if summary.kept {
         reasons.extend(samples_too_rare(
@@ -36,41 +32,18 @@ pub(super) fn found(summary: &Summary, simulation: &Simulation) -> Vec<Reason> {
 
 fn broken(load: &Load) -> Option<Reason> {
     let breaking = load.strength.breaking_load?;
-    (load.tension > breaking).then(|| Reason::AboveBreakingLoad {
+    let tension = load.tension.greatest;
+    (tension > breaking).then(|| Reason::AboveBreakingLoad {
         chain: load.chain.clone(),
-        tension: load.tension,
+        tension,
         breaking,
-    })
-}
-
-fn overloaded(rating: &Rating) -> Option<Reason> {
-    let sprocket = rating.sprocket.as_ref()?;
-    let (limited_by, rated) = rating.governing()?;
-    (rating.utilisation()? > 1.0).then(|| Reason::AboveRating {
-        sprocket: sprocket.name.clone(),
-        speed: sprocket.speed.abs(),
-        power: rating.carried,
-        service_factor: rating.service_factor,
-        rated,
-        limited_by,
-    })
-}
-
-/// A chain that carries power, and whose type nobody rates.
-fn unrated(rating: &Rating) -> Option<Reason> {
-    let turns = rating.sprocket.as_ref()?.speed.abs() > 0.0;
-    let nobody = matches!(rating.limits, Err(MissingRating::SourceMissing { .. }));
-    (turns && nobody).then(|| Reason::NotRated {
-        chain: rating.chain.clone(),
-        power: rating.carried,
-        twin: rating.twin,
     })
 }
 
 fn pressed(load: &Load) -> Option<Reason> {
     (load.pressed > 0.0).then(|| Reason::LinksPressed {
         chain: load.chain.clone(),
-        force: -load.least,
+        force: -load.tension.least,
         share: load.pressed,
     })
 }
@@ -106,18 +79,6 @@ fn fastest(struck: &[BodyImpacts]) -> Option<Reason> {
         place: worst.place.clone(),
         speed,
         limit: FASTEST_IMPACT,
-    })
-}
-
-/// The span that is most out of line, where that is too much.
-fn out_of_line(parts: &Parts) -> Option<Reason> {
-    let spans = parts.out_of_line().into_iter();
-    let spans = spans.map(|it| (it.offset / it.centres, it));
-    let (of_centres, worst) = spans.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (of_centres > ALIGNED).then_some(Reason::OutOfLine {
-        span: worst.span,
-        sprocket: worst.sprocket,
-        of_centres,
     })
 }
 

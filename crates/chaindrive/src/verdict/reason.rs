@@ -1,21 +1,19 @@
 //! The list of reasons not to trust a result without a second look, and of what its reader is to know: a row has its name, what it makes of a
 //! result, its words, when it speaks, and on whose authority.
 
-use std::f64::consts::TAU;
 use std::fmt;
 
 use chaindrive_contact::dissipation::FASTEST_IMPACT;
 use chaindrive_mechanics::MotionConflict;
 
 use super::{
-    ALIGNED, ALIGNED_FAST, DRIVES, LEAST_SAMPLES, LEAST_SHIFT, LEAST_STEPS, LONG_PRESSED, MATTERS,
-    MOST_EFFICIENCY, OPEN_LEDGER, OPEN_MOTION, PRESSED, Trust, UNCERTAIN_LOSSES, UNHELD, Verdict,
-    WIDE, WRONG_LOSSES,
+    DRIVES, LEAST_SAMPLES, LEAST_SHIFT, LEAST_STEPS, LONG_PRESSED, MATTERS, MOST_EFFICIENCY,
+    OPEN_LEDGER, OPEN_MOTION, PRESSED, Trust, UNCERTAIN_LOSSES, UNHELD, Verdict, WIDE,
+    WRONG_LOSSES,
 };
 use crate::MOST_CIRCUITS;
 use crate::figure::{Measure, duration, percent, with_digits};
 use crate::precision::{ChannelHorizon, Gap, LEAST_LOSSES};
-use crate::rating::LimitedBy;
 use crate::summary::DRIFT;
 
 /// When a reason speaks.
@@ -125,11 +123,11 @@ reasons! {
     SpanRarelyHeld, "span-rarely-held", Distrusted {
         /// Name of the span.
         span: String,
-        /// Share of the samples without a tension \[–\].
+        /// Share of the time without a tension \[–\].
         share: f64,
     }
     says ("{}", unheld(span, *share))
-    when ("no roller holds a span in more than {} of the samples", percent(UNHELD)) by "most of its record is missing";
+    when ("no roller holds a span in more than {} of the time", percent(UNHELD)) by "most of its record is missing";
 
     /// A link bears more than breaks the chain.
     AboveBreakingLoad, "above-breaking-load", Distrusted {
@@ -172,11 +170,11 @@ reasons! {
     SpanNotHeld, "span-not-held", Caution {
         /// Name of the span.
         span: String,
-        /// Share of the samples without a tension \[–\].
+        /// Share of the time without a tension \[–\].
         share: f64,
     }
     says ("{}", unheld(span, *share))
-    when ("no roller holds a span in some samples") by COUNTED;
+    when ("no roller holds a span at some time") by COUNTED;
 
     /// The motion has not become steady: means are those of a transient.
     NotSteady, "not-steady", Caution {
@@ -249,26 +247,6 @@ reasons! {
     says ("{}", missed(*accuracy, *error, *was_chosen))
     when ("the choice, or the run's own estimate, finds a larger error than was asked for") by COUNTED;
 
-    /// A chain carries more power than it is rated for.
-    AboveRating, "above-rating", Caution {
-        /// The smallest sprocket that takes part.
-        sprocket: String,
-        /// Its mean speed \[rad/s\].
-        speed: f64,
-        /// Mean power \[W\].
-        power: f64,
-        /// By how much it counts more \[–\].
-        service_factor: f64,
-        /// Power that the chain is rated for at this speed \[W\].
-        rated: f64,
-        /// What limits it.
-        limited_by: LimitedBy,
-    }
-    says ("the chain carries {:.1} kW at {:.0} rpm of {sprocket}{}, and is rated for {:.1} kW there, {}: take a stronger chain, see chaindrive design",
-        power * 1e-3, speed * 60.0 / TAU, in_service(*service_factor, power * 1e-3), rated * 1e-3, if *limited_by == LimitedBy::Maker { "by its maker" } else { "for 15 000 hours" })
-    when ("mean power times service factor above the rating of the chain at its smallest sprocket")
-    by "ASME B29.1, 15 000 hours; or what the scene says of the maker";
-
     /// A contact is deeper than its law reaches.
     DeepContact, "deep-contact", Caution {
         /// The two that touch.
@@ -293,20 +271,6 @@ reasons! {
     }
     says ("{place}: struck at {speed:.1} m/s, and one restitution stands for impacts up to {limit} m/s: give that of such impacts, --set \"contact.….restitution=…\"")
     when ("an impact closes faster than {FASTEST_IMPACT} m/s") by "that of the restitution";
-
-    /// Sprockets are out of line by more than makers allow.
-    OutOfLine, "out-of-line", Caution {
-        /// The span between them.
-        span: String,
-        /// One of them.
-        sprocket: String,
-        /// Distance of their planes over that of their shafts \[–\].
-        of_centres: f64,
-    }
-    says ("the sprockets of span {span} are out of line by {} of the distance of their shafts: where that is not meant so, align them with --set \"sprockets.{sprocket}.lateral=…\"",
-        percent(*of_centres))
-    when ("the planes of two sprockets are apart by more than {} of the distance of their shafts; in fast drives {} are allowed",
-        percent(ALIGNED), percent(ALIGNED_FAST)) by "SEDIS, Transmission chains";
 
     /// Loads put energy in.
     LoadDrives, "load-drives", Caution {
@@ -370,19 +334,6 @@ reasons! {
     says ("waveforms are right {}: use statistics beyond", reach(spans.as_ref(), links.as_ref()))
     when ("waveforms differ from the exact ones by 1 % before the run ends, as those of all chaotic motions do") by ASSUMED;
 
-    /// A chain carries power, and there is no rating of its type.
-    NotRated, "not-rated", Trusted {
-        /// Name of the chain; empty where there is one only.
-        chain: String,
-        /// Mean power \[W\].
-        power: f64,
-        /// What the chain of ASME B29.1 with its pitch is rated for there \[W\].
-        twin: Option<f64>,
-    }
-    says ("nobody rates this type in a source that could be read, so whether the chain{} may carry {} is not checked{}: give what the maker says as chain.rated_power",
-        of(chain), Measure::Power.told(*power), of_the_twin(*power, *twin))
-    when ("a chain of the catalogue carries power, and no formula with a source rates its type") by COUNTED;
-
     /// The error of the end of the run is not known.
     NotExamined, "not-examined", Trusted {
         /// Time over which the run was examined \[s\].
@@ -414,7 +365,7 @@ fn of(chain: &str) -> String {
 
 fn unheld(span: &str, share: f64) -> String {
     format!(
-        "span {span} has no tension in {} of the samples, because no roller holds it: raise --set \"route.pretension=…\", or lower the speed",
+        "span {span} has no tension in {} of the time, because no roller holds it: raise --set \"route.pretension=…\", or lower the speed",
         percent(share)
     )
 }
@@ -459,23 +410,4 @@ fn reach(spans: Option<&ChannelHorizon>, links: Option<&ChannelHorizon>) -> Stri
     };
     let ends = [of(spans, "span tensions"), of(links, "link tensions")];
     ends.into_iter().flatten().collect::<Vec<_>>().join(", ")
-}
-
-/// Power \[kW\] as the rating counts it.
-fn in_service(factor: f64, carried: f64) -> String {
-    if (factor - 1.0).abs() <= f64::EPSILON {
-        return String::new();
-    }
-    let counted = factor * carried;
-    format!(", {counted:.1} kW with the service factor {factor}")
-}
-
-fn of_the_twin(power: f64, twin: Option<f64>) -> String {
-    twin.map_or_else(String::new, |twin| {
-        format!(
-            " ({:.0} % of the {} that ASME B29.1 rates its chain of this pitch for)",
-            100.0 * power / twin,
-            Measure::Power.told(twin)
-        )
-    })
 }

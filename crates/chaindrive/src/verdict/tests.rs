@@ -4,7 +4,6 @@ use super::*;
 use chaindrive_mechanics::MotionConflict;
 
 use crate::precision::Gap;
-use crate::rating::LimitedBy;
 use crate::summary::ConfidenceInterval;
 
 /// A drive that takes in 100 J and loses 2 J.
@@ -197,7 +196,6 @@ fn intervals_that_are_wide_or_missing_are_told() {
 }
 
 /// One of each reason.
-#[expect(clippy::too_many_lines, reason = "a list: one of every reason")]
 fn specimens() -> Vec<Reason> {
     let span = || "a-b".to_owned();
     let none = String::new;
@@ -250,19 +248,6 @@ fn specimens() -> Vec<Reason> {
             tension: 1e4,
             breaking: 9e3,
         },
-        Reason::AboveRating {
-            sprocket: span(),
-            speed: 100.0,
-            power: 2e3,
-            service_factor: 1.4,
-            rated: 1e3,
-            limited_by: LimitedBy::Plates,
-        },
-        Reason::NotRated {
-            chain: none(),
-            power: 15e3,
-            twin: Some(12.2e3),
-        },
         Reason::DeepContact {
             place: span(),
             depth: 1e-4,
@@ -272,11 +257,6 @@ fn specimens() -> Vec<Reason> {
             place: span(),
             speed: 4.0,
             limit: 3.0,
-        },
-        Reason::OutOfLine {
-            span: "ring-cog".into(),
-            sprocket: "ring".into(),
-            of_centres: 0.03,
         },
         Reason::LoadDrives { work: 12.0 },
         Reason::SamplesRare {

@@ -2,15 +2,16 @@
 //! does not; and the counts behind them.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
+use chaindrive::chain_verdict::{Check, Limit};
 use chaindrive::rating::rated_power;
 use chaindrive::record::SpanStatistics;
 use chaindrive::{
-    Channel, Description, EventKinds, Judgement, Memory, Request, Run, Scene, SettingValue,
-    Settings, Simulation, Summary, Trust, Verdict, execute,
+    ChainVerdict, Channel, CheckOutcome, Description, EventKinds, Memory, Request, Run, Scene,
+    SettingValue, Settings, Simulation, Summary, Trust, Verdict, execute,
 };
 use chaindrive_mechanics::{BodyImpacts, Energy};
 
-use crate::judged::{finished, names, notes, page, preset, run, verdict};
+use crate::judged::{finished, names, page, preset, run, verdict};
 
 /// A chain of the catalogue around two sprockets of 19 teeth, the second of which is given this.
 fn two_sprockets(second: &str) -> Scene {
@@ -76,15 +77,26 @@ fn a_link_that_bears_more_than_breaks_the_chain_is_distrusted() {
 
 /// A 16A on 19 teeth at 300 rpm is rated for 12.2 kW: 388 N m.
 #[test]
-fn more_power_than_a_chain_is_rated_for_is_a_caution() {
-    let over = verdict(&loaded("-600 N m"), &run(0.05, 100.0));
-    tells_apart(
-        "above-rating",
-        &over,
-        &verdict(&loaded("-300 N m"), &run(0.05, 100.0)),
+fn more_power_than_a_chain_is_rated_for_fails() {
+    let rated = |torque: &str| {
+        let (simulation, summary) = finished(&loaded(torque), &run(0.05, 100.0));
+        power_check(&summary, &simulation)
+    };
+    let over = rated("-600 N m");
+    assert_eq!(over.outcome, CheckOutcome::Fail, "{over}");
+    // 600 N m at 31.4 rad/s are 18.85 kW.
+    assert!(
+        (over.value.unwrap() / (100.0 * 18.85 / 12.16) - 1.0).abs() < 0.02,
+        "{over}"
     );
-    assert!(over.note().contains("rated for 12.2 kW"), "{over}");
-    assert_ne!(over.trust, Trust::Distrusted, "{over}");
+    assert_eq!(rated("-300 N m").outcome, CheckOutcome::Pass);
+}
+
+/// What is said of the power of the chain.
+fn power_check(summary: &Summary, simulation: &Simulation) -> Check {
+    let chains = ChainVerdict::of(summary, simulation, &[]);
+    let of_power = |it: &Check| matches!(it.limit, Limit::RatedPower | Limit::TwinPower);
+    chains.checks.into_iter().find(of_power).unwrap()
 }
 
 /// Two strands bear 1.7 times, and a service factor counts with what is carried: 600 N m are 18.8 kW, over 12.2 and under 20.7 kW.
@@ -94,18 +106,15 @@ fn strands_and_service_factor_serve_the_rating_only() {
     let changed = |torque: &str, path: &str, value: &str| {
         finished(&loaded(torque).replace(path, value).unwrap(), &run)
     };
-    let judged = |of: &(Simulation, Summary)| {
-        let unknown = Judgement::SwitchedOff;
-        Verdict::of(&of.1, &of.0, None, None, Some(&unknown))
-    };
+    let judged = |of: &(Simulation, Summary)| power_check(&of.1, &of.0);
     let one = changed("-600 N m", "chain.strands", "1");
     let two = changed("-600 N m", "chain.strands", "2");
-    tells_apart("above-rating", &judged(&one), &judged(&two));
+    assert_eq!(judged(&one).outcome, CheckOutcome::Fail);
+    assert_eq!(judged(&two).outcome, CheckOutcome::Pass);
     let rough = changed("-300 N m", "chain.service_factor", "1.5");
     let smooth = changed("-300 N m", "chain.service_factor", "1");
-    tells_apart("above-rating", &judged(&rough), &judged(&smooth));
-    let words = judged(&rough).note();
-    assert!(words.contains("with the service factor 1.5"), "{words}");
+    assert_eq!(judged(&rough).outcome, CheckOutcome::Fail);
+    assert_eq!(judged(&smooth).outcome, CheckOutcome::Pass);
     for (changed, plain) in [(&two, &one), (&rough, &smooth)] {
         let residual = |of: &(Simulation, Summary)| of.1.residual.to_bits();
         assert_eq!(residual(changed), residual(plain), "the motion is another");
@@ -115,27 +124,30 @@ fn strands_and_service_factor_serve_the_rating_only() {
     }
 }
 
-/// A chain of the B series is rated by what its maker says; else a note tells that nobody judges it, and what its twin bears.
+/// A chain of the B series is rated by what its maker says; else it is held against its twin, which warns and never fails it.
 #[test]
-fn a_chain_that_nobody_rates_does_not_carry_in_silence() {
-    let run = run(0.05, 100.0);
-    let silent = verdict(&preset("industrial_16b", &[]), &run);
-    assert!(notes(&silent).contains(&"not-rated"), "{silent}");
-    assert!(
-        silent.note().contains("of the 12.16 kW that ASME B29.1"),
-        "{silent}"
-    );
-    assert!(!names(&silent).contains(&"above-rating"), "{silent}");
-    let by_maker = |power| {
-        verdict(
-            &preset("industrial_16b", &[("chain.rated_power", power)]),
-            &run,
-        )
+fn a_chain_that_nobody_rates_is_held_against_its_twin() {
+    let rated = |changes: &[(&str, &str)]| {
+        let scene = preset("industrial_16b", changes);
+        let (simulation, summary) = finished(&scene, &run(0.05, 100.0));
+        power_check(&summary, &simulation)
     };
-    let (weak, strong) = (by_maker("\"13 kW\""), by_maker("\"18 kW\""));
-    tells_apart("above-rating", &weak, &strong);
-    assert!(weak.note().contains("by its maker"), "{weak}");
-    assert!(!notes(&strong).contains(&"not-rated"), "{strong}");
+    let silent = rated(&[]);
+    assert_eq!(
+        (silent.limit, silent.outcome),
+        (Limit::TwinPower, CheckOutcome::Warning)
+    );
+    for (power, outcome) in [
+        ("\"13 kW\"", CheckOutcome::Fail),
+        ("\"18 kW\"", CheckOutcome::Pass),
+    ] {
+        let by_maker = rated(&[("chain.rated_power", power)]);
+        assert_eq!(
+            (by_maker.limit, by_maker.outcome),
+            (Limit::RatedPower, outcome)
+        );
+        assert_eq!(by_maker.note, "maker");
+    }
 }
 
 /// Both shafts bear the tensions of both spans, drawn towards each other: the mean forces are equal and opposite, and along the centres.
@@ -360,7 +372,7 @@ fn an_efficiency_is_one_of_mean_powers() {
         let apart = (efficiency - found[0][0]).abs();
         assert!(apart < uncertain + found[0][1], "{found:?}");
     }
-    let told = format!("lost: {:.3} % ± ", 100.0 * found[2][0]);
+    let told = format!("lost: {:.1} % ± ", 100.0 * found[2][0]);
     let page = page(&summary, &simulation);
     assert!(
         page.contains(&told) && page.contains("to and fro"),

@@ -53,12 +53,16 @@ pub(crate) fn run(until: f64, samples: f64) -> Run {
 
 /// A run to its end, with its contacts.
 pub(crate) fn finished(scene: &Scene, run: &Run) -> (Simulation, Summary) {
-    let mut simulation = Simulation::start(&scene.drive().unwrap(), run).unwrap();
+    let run = Run {
+        watched: true,
+        ..run.clone()
+    };
+    let mut simulation = Simulation::start(&scene.drive().unwrap(), &run).unwrap();
     let mut summary = Summary::new(&simulation);
     while simulation.next_sample().unwrap().is_some() {
-        summary.push(simulation.observation());
-        summary.count(simulation.events());
+        summary.take(&simulation);
     }
+    summary.end(&simulation);
     (simulation, summary)
 }
 

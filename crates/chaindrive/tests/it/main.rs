@@ -1,9 +1,11 @@
 //! Integration tests in one binary: linking dozens of them takes longer than running them.
 
+mod account;
 mod against_reference;
 mod allocations;
 mod architecture;
 mod bearings;
+mod chain_verdict;
 mod choice;
 mod choice_statistics;
 mod courses;

@@ -93,16 +93,18 @@ fn a_variant_is_the_run_of_its_scene() -> Checked {
         _ => None,
     };
     let run = Run {
+        watched: true,
         step: step.map(|it| it.values[0]),
         ..Run::suggested(&scene.run_defaults())
     };
     let mut simulation = Simulation::start(&scene.drive()?, &run)?;
     let mut summary = Summary::new(&simulation);
     let mut tension = Vec::new();
-    while let Some(sample) = simulation.next_sample()? {
-        summary.push(sample);
-        tension.extend_from_slice(&sample.span_tension);
+    while simulation.next_sample()?.is_some() {
+        summary.take(&simulation);
+        tension.extend_from_slice(&simulation.observation().span_tension);
     }
+    summary.end(&simulation);
     let stacked = sweep.stack(&outcomes);
     let last = |quantity: ResultQuantity| {
         let found = stacked.quantities.iter().find(|it| it.quantity == quantity);
@@ -116,7 +118,7 @@ fn a_variant_is_the_run_of_its_scene() -> Checked {
         means
     );
     let largest = ResultQuantity::Statistic(Statistic::ContactForceMax);
-    assert_eq!(last(largest), [summary.forces().max]);
+    assert_eq!(last(largest), [summary.greatest_contact()]);
     Ok(())
 }
 

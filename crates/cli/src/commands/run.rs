@@ -3,8 +3,10 @@
 use std::cell::RefCell;
 use std::path::PathBuf;
 
-use chaindrive::{Onlooker, Report, RunError, SettingValue, Simulation, Stop, execute};
-use clap::Args;
+use chaindrive::{
+    CheckOutcome, Onlooker, Report, RunError, SettingValue, Simulation, Stop, execute,
+};
+use clap::{Args, ValueEnum};
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -84,9 +86,21 @@ pub(super) struct ReportOptions {
     #[arg(long)]
     pub(super) numerics: bool,
 
-    /// Exits with 4 if the verdict is `distrusted`; the result is kept all the same
-    #[arg(long)]
-    strict: bool,
+    /// Exits with 4 if the verdict is `distrusted`, with `chain` with 5 if the verdict on the chain is `fail`, with `all` with either; the result
+    /// is kept all the same
+    #[arg(long, value_name = "WHAT", num_args = 0..=1, require_equals = true, default_missing_value = "numbers")]
+    strict: Option<Strictness>,
+}
+
+/// Verdicts that decide on the exit code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Strictness {
+    /// That on the numbers
+    Numbers,
+    /// That on the chain
+    Chain,
+    /// Both
+    All,
 }
 
 pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
@@ -181,9 +195,16 @@ pub(super) fn concluded(
 }
 
 /// Exit code of a run.
-fn ended(report: Report, scene: &str, strict: bool) -> Result<(), Failure> {
+fn ended(report: Report, scene: &str, strict: Option<Strictness>) -> Result<(), Failure> {
+    let of = |what: Strictness| strict.is_some_and(|it| it == what || it == Strictness::All);
+    let chain_fails = report.verdict.chains.outcome() == CheckOutcome::Fail;
     match report.stop {
-        Stop::End if strict && report.verdict.is_distrusted() => Err(Failure::Distrusted {
+        Stop::End if of(Strictness::Numbers) && report.verdict.is_distrusted() => {
+            Err(Failure::Distrusted {
+                scene: scene.to_owned(),
+            })
+        }
+        Stop::End if of(Strictness::Chain) && chain_fails => Err(Failure::Overloaded {
             scene: scene.to_owned(),
         }),
         Stop::End => Ok(()),

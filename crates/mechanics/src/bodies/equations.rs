@@ -5,6 +5,7 @@ use chaindrive_integrate::{Moment, Prediction};
 
 use super::slide::Pose;
 use super::{Bodies, RailSupport, TurnedBy, Wheel, WheelSupport};
+use crate::accounts::{AccountRates, Source};
 use crate::contact::Wrench;
 use crate::energy::Flow;
 use crate::tensioner::Slopes;
@@ -20,9 +21,20 @@ impl Bodies {
         [wheel_wrenches, rail_wrenches]: [&[Wrench]; 2],
         (pushes, resisting): (&mut [Slopes], &mut [f64]),
     ) {
-        let (rates, flows) = rates.split_at_mut(Flow::ALL.len());
-        self.turn_shafts(at, a, rates, wheel_wrenches, resisting);
-        for (wheel, wrench) in self.wheels.iter().zip(wheel_wrenches) {
+        let (rates, rest) = rates.split_at_mut(Flow::ALL.len());
+        let (accounts, flows) = rest.split_at_mut(self.accounts.length());
+        let accounts = &mut self.accounts.rates(accounts);
+        self.turn_shafts(at, a, (rates, accounts), wheel_wrenches, resisting);
+        if accounts.are_kept() {
+            for (i, (wheel, wrench)) in self.wheels.iter().zip(wheel_wrenches).enumerate() {
+                accounts.of_sprocket(i, wheel.shaft, wrench.moment, wrench.force);
+            }
+            for (i, wrench) in rail_wrenches.iter().enumerate() {
+                accounts.of_guide(i, wrench.force, wrench.normal_loss + wrench.friction_loss);
+            }
+            self.balance_shafts(a, accounts);
+        }
+        for (index, (wheel, wrench)) in self.wheels.iter().zip(wheel_wrenches).enumerate() {
             let centre = || wheel.centre_kinematics(at.t, at.q, at.v, &self.slides);
             match &wheel.support {
                 WheelSupport::Fixed => {}
@@ -46,7 +58,9 @@ impl Bodies {
                         let force =
                             wrench.force[axis] - stiffness[axis] * away - damping[axis] * speed;
                         a[dof + axis] = force / wheel.mass + self.gravity[axis];
-                        rates[Flow::SupportLoss as usize] += damping[axis] * speed * speed;
+                        let lost = damping[axis] * speed * speed;
+                        rates[Flow::SupportLoss as usize] += lost;
+                        accounts.damp(index, lost);
                     }
                 }
                 WheelSupport::Carried(index) => {
@@ -100,12 +114,14 @@ impl Bodies {
             }
             let (push, lever, acceleration) = accelerate(pose, state);
             a[dof] = acceleration;
-            rates[Flow::TensionerLoss as usize] -= push.damping * lever * pose.rate;
+            let mut lost = -push.damping * lever * pose.rate;
             if let Some(place) = slide.state {
-                rates[Flow::TensionerLoss as usize] += push.loss;
+                lost += push.loss;
                 flows[place] = push.flow;
                 pushes[i] = slide.slopes(pose, state);
             }
+            rates[Flow::TensionerLoss as usize] += lost;
+            accounts.of_tensioner(i, [pose.coordinate, push.elastic + push.damping, lost]);
             rates[Flow::DriveTorque as usize] += input * pose.rate;
         }
     }
@@ -119,7 +135,7 @@ impl Bodies {
         &self,
         at: Moment<'_>,
         a: &mut [f64],
-        rates: &mut [f64],
+        (rates, accounts): (&mut [f64], &mut AccountRates<'_>),
         wheel_wrenches: &[Wrench],
         resisting: &mut [f64],
     ) {
@@ -135,10 +151,15 @@ impl Bodies {
         }
         for (i, shaft) in self.shafts.iter().enumerate() {
             let kinematics = shaft.turn.kinematics(at.t, at.q, at.v);
-            let driving = self.torque(&shaft.drive, kinematics, at) + self.inputs.torque(i, at.t);
+            let control = self.inputs.torque(i, at.t);
+            let driving = self.torque(&shaft.drive, kinematics, at) + control;
             let loading = shaft.load_factor * self.torque(&shaft.load, kinematics, at);
             rates[Flow::DriveTorque as usize] += driving * kinematics.rate;
             rates[Flow::Load as usize] += loading * kinematics.rate;
+            accounts.turn(i, kinematics.rate, kinematics.acceleration);
+            accounts.add(i, Source::Drive, (driving - control) * kinematics.rate);
+            accounts.add(i, Source::Control, control * kinematics.rate);
+            accounts.add(i, Source::Load, loading * kinematics.rate);
             if let Some((dof, ratio)) = shaft.turn.turned_by() {
                 a[dof] += ratio * driving;
                 a[dof] += ratio * loading;
@@ -148,17 +169,18 @@ impl Bodies {
                 rates[Flow::Driver as usize] += torque * kinematics.rate;
             }
         }
-        self.resist(at, a, rates, wheel_wrenches, resisting);
+        self.resist(at, a, (rates, accounts), wheel_wrenches, resisting);
         for coupling in &self.couplings {
             let [torque, rate] = self.coupling_torque(coupling, at);
             rates[Flow::SupportLoss as usize] += coupling.damping * rate * rate;
             for (index, sign) in coupling.shafts.into_iter().zip([1.0, -1.0]) {
                 let turn = &self.shafts[index].turn;
+                let speed = turn.kinematics(at.t, at.q, at.v).rate;
+                accounts.add(index, Source::Couplings, sign * torque * speed);
                 if let Some((dof, ratio)) = turn.turned_by() {
                     a[dof] += sign * ratio * torque;
                 } else {
                     // A motion that is given supplies what the coupling takes.
-                    let speed = turn.kinematics(at.t, at.q, at.v).rate;
                     rates[Flow::Driver as usize] -= sign * torque * speed;
                 }
             }
@@ -172,6 +194,35 @@ impl Bodies {
         }
     }
 
+    /// Adds what gears and motions that are given do on the shafts.
+    ///
+    /// ```text
+    /// P = J α ω − Σ M ω     what is missing on a shaft: a given motion supplies it, through the gears of a train
+    /// ```
+    fn balance_shafts(&self, a: &[f64], accounts: &mut AccountRates<'_>) {
+        for (i, shaft) in self.shafts.iter().enumerate() {
+            let [speed, mut acceleration] = accounts.turning(i);
+            let leader = shaft.turn.train;
+            if let Some((dof, ratio)) = shaft.turn.turned_by() {
+                acceleration = ratio * a[dof];
+                accounts.turn(i, speed, acceleration);
+                let mut train = self.shafts.iter().filter(|it| it.turn.train == leader);
+                // Alone on its coordinate nothing is missing but rounding.
+                if train.nth(1).is_none() {
+                    continue;
+                }
+            }
+            let on_it = self.wheels.iter().filter(|wheel| wheel.shaft == i);
+            let inertia = shaft.inertia + on_it.map(|wheel| wheel.inertia).sum::<f64>();
+            let missing = inertia * acceleration * speed - accounts.power(i);
+            if shaft.turn.turned_by().is_none() {
+                accounts.add(leader, Source::Motion, missing);
+                accounts.add(leader, Source::Gears, -missing);
+            }
+            accounts.add(i, Source::Gears, missing);
+        }
+    }
+
     /// Losses of the shafts, at their sprockets and elsewhere; their damping is written down.
     ///
     /// ```text
@@ -181,7 +232,7 @@ impl Bodies {
         &self,
         at: Moment<'_>,
         a: &mut [f64],
-        rates: &mut [f64],
+        (rates, accounts): (&mut [f64], &mut AccountRates<'_>),
         wheel_wrenches: &[Wrench],
         resisting: &mut [f64],
     ) {
@@ -190,9 +241,10 @@ impl Bodies {
             (wrench.force[0] + weight.x).hypot(wrench.force[1] + weight.y)
         };
         let wheels = self.wheels.iter().zip(wheel_wrenches);
-        let at_wheels = wheels.map(|it| (&it.0.turn, &it.0.loss, Some(it)));
-        let elsewhere = self.shafts.iter().map(|it| (&it.turn, &it.loss, None));
-        for ((turn, loss, carries), damping) in at_wheels.chain(elsewhere).zip(resisting) {
+        let at_wheels = wheels.map(|it| (it.0.shaft, &it.0.turn, &it.0.loss, Some(it)));
+        let shafts = self.shafts.iter().enumerate();
+        let elsewhere = shafts.map(|(index, it)| (index, &it.turn, &it.loss, None));
+        for ((shaft, turn, loss, carries), damping) in at_wheels.chain(elsewhere).zip(resisting) {
             if loss.is_none() {
                 continue;
             }
@@ -203,6 +255,8 @@ impl Bodies {
             *damping = found.damping;
             rates[Flow::BearingLoss as usize] -= bearing * speed;
             rates[Flow::ShaftDragLoss as usize] -= drag * speed;
+            accounts.add(shaft, Source::Bearings, bearing * speed);
+            accounts.add(shaft, Source::Drag, drag * speed);
             if let Some((dof, ratio)) = turn.turned_by() {
                 a[dof] += ratio * (bearing + drag);
             } else {

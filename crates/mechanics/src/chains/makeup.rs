@@ -61,6 +61,11 @@ pub(crate) trait Makeup: Statics {
     /// Appends the tension of every link \[N\].
     fn tensions(&self, at: Moment<'_>, work: &Self::Work, out: &mut Vec<f64>);
 
+    /// The same into an empty list, asked for at every step: rounded as is quickest.
+    fn tensions_of_step(&self, at: Moment<'_>, work: &Self::Work, out: &mut Vec<f64>) {
+        self.tensions(at, work, out);
+    }
+
     /// Appends what belongs to the chain, forces apart.
     fn observe(&self, at: Moment<'_>, work: &Self::Work, out: &mut Observation);
 

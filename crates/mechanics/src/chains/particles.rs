@@ -238,6 +238,15 @@ impl Makeup for Particles {
         out.extend(links);
     }
 
+    fn tensions_of_step(&self, at: Moment<'_>, _work: &Work, out: &mut Vec<f64>) {
+        let n = self.series.stride;
+        let columns = [&at.q[..n], &at.q[n..2 * n], &at.v[..n], &at.v[n..2 * n]];
+        out.resize(self.links.rest.len(), 0.0);
+        let pulls = springs::pulls(&self.links, columns, out);
+        self.series.registers.dispatch(pulls);
+        out.truncate(self.links.count);
+    }
+
     fn observe(&self, at: Moment<'_>, _work: &Work, out: &mut Observation) {
         out.add_rollers(Pose::of_first(at, self.series.stride), self.series.rollers);
     }

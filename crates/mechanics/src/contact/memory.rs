@@ -129,6 +129,31 @@ impl ContactMemory {
         (0..self.len()).map(move |contact| self.get(what, contact))
     }
 
+    /// Greatest force of one circle \[N\]: those on all sides of its slot add up, which stand `slots` after each other.
+    pub(crate) fn greatest_force(&self, slots: usize) -> f64 {
+        let forces = |block: &[f64]| -> [f64; LANES] {
+            let first = MemoryField::Force as usize * LANES;
+            std::array::from_fn(|k| block[first + k])
+        };
+        let side = blocks(slots);
+        let mut greatest = [0.0; LANES];
+        for place in (0..side.min(self.numbers.len())).step_by(BLOCK) {
+            let mut sum = [0.0; LANES];
+            for block in self.numbers[place..].chunks(side).map(|it| &it[..BLOCK]) {
+                let own = forces(block);
+                sum = std::array::from_fn(|k| sum[k] + own[k]);
+            }
+            greatest = std::array::from_fn(|k| {
+                if sum[k] > greatest[k] {
+                    sum[k]
+                } else {
+                    greatest[k]
+                }
+            });
+        }
+        greatest.into_iter().fold(0.0, f64::max)
+    }
+
     /// Takes over one contact of another memory.
     pub(crate) fn carry(&mut self, to: usize, other: &Self, from: usize) {
         let [to, from] = [to, from].map(|contact| place(MemoryField::InverseOnset, contact));

@@ -7,6 +7,7 @@ use chaindrive_geometry::Point;
 
 use super::offset_spans::OffsetSpans;
 use super::{Group, Member, System};
+use crate::accounts::AccountSizes;
 use crate::bodies::{
     Anchor, Bodies, BodyContacts, GuideContacts, Inputs, Rail, RailContact, RailSupport, Shaft,
     Slide, Turn, TurnedBy, Wheel, WheelContacts, WheelSupport,
@@ -95,6 +96,7 @@ impl System {
             inertias: Vec::new(),
             rates: [0.0; 2],
             inputs: Inputs::default(),
+            accounts: AccountSizes::default(),
         };
         bodies.number_states();
         bodies.weigh(dofs - first);
@@ -108,6 +110,7 @@ impl System {
             time_scales: [f64::INFINITY; 4],
             onset_depth: None,
             begin: laid.begin,
+            watch: None,
         };
         system.refer_to_groups();
         let mut v = vec![0.0; dofs];

@@ -130,6 +130,21 @@ impl Member {
         wheel.pitch_radius * self.chain.elongation().max(1.0)
     }
 
+    /// Last roller on the sprocket where a span begins, and first one on the next, by what lies on every sprocket; none where nothing does.
+    pub(crate) fn span_ends(
+        &self,
+        seats: &[Option<(usize, usize)>],
+        span: usize,
+    ) -> Option<(usize, usize)> {
+        let seat_on = |k: usize| {
+            let wheel = self.route[k % self.route.len()];
+            let mut teeth = self.contacts.teeth.iter();
+            seats[teeth.position(|on| on.wheel == wheel)?]
+        };
+        let ((_, last), (first, _)) = (seat_on(span)?, seat_on(span + 1)?);
+        Some((last, first))
+    }
+
     /// Counts an accepted step, and renews the windows when it is time.
     pub(crate) fn look_around(&mut self, bodies: &Bodies, at: Moment<'_>, record: &mut Record) {
         self.renew.1 = self.renew.1.saturating_sub(1);

@@ -15,6 +15,7 @@ use crate::chains::ChainMemory;
 use crate::contact::{Arrivals, Impacts, PlateMemory, Windows};
 use crate::seam::EventLog;
 use crate::seam::Rates;
+use crate::watch::Watch;
 
 /// Contacts, windows, inputs and the log of a [`System`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -25,6 +26,7 @@ pub struct SystemMemory {
     events: Option<EventLog>,
     applied: applied::AppliedForces,
     time_scales: [f64; 4],
+    watch: Option<Box<Watch>>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -53,6 +55,7 @@ impl System {
             events: self.events.clone(),
             applied: self.applied.clone(),
             time_scales: self.time_scales,
+            watch: self.watch.clone(),
         }
     }
 
@@ -71,11 +74,17 @@ impl System {
             places,
             self.events.as_ref().map_or(0, EventLog::places),
         )?;
+        match (&memory.watch, &self.watch) {
+            (None, None) => {}
+            (Some(watch), Some(own)) => watch.check(own)?,
+            (Some(_), None) | (None, Some(_)) => return Err(MemoryError::Model),
+        }
         self.set_again(&memory.courses, &memory.inputs.tuned)?;
         self.bodies.inputs = memory.inputs;
         self.events = memory.events;
         self.applied = memory.applied;
         self.time_scales = memory.time_scales;
+        self.watch = memory.watch;
         Ok(())
     }
 

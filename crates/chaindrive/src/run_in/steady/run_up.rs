@@ -25,6 +25,7 @@ pub(super) fn run_up(
     let silent = Run {
         run_in: RunIn::None,
         events: EventKinds::default(),
+        watched: false,
         ..run.clone()
     };
     let mut moving = Simulation::from_assembled(start.clone(), &silent)?;

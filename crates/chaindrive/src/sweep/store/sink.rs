@@ -9,6 +9,7 @@ use serde_json::Map;
 use zarrs::storage::{Bytes, StoreKey};
 
 use super::{Arrays, MARK, Storage, StoreLocation, every_chunk};
+use crate::chain_verdict::WrittenChainVerdict;
 use crate::precision::Choice;
 use crate::seal::{opened, sealed};
 use crate::sweep::layout::Layout;
@@ -227,6 +228,11 @@ impl StoreSink {
                         verdict: text("verdict"),
                         reasons: text("reasons"),
                         note: text("verdict_note"),
+                        chains: WrittenChainVerdict {
+                            verdict: text("chain_verdict"),
+                            reasons: text("chain_reasons"),
+                            note: text("chain_verdict_note"),
+                        },
                     },
                     ..Account::default()
                 }),

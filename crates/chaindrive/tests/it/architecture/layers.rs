@@ -15,7 +15,16 @@ const CRATES: [Storeys; 6] = [
     Storeys {
         folder: "mechanics",
         layers: &[
-            &["applied", "dense", "energy", "error", "kinematics", "lanes"],
+            &[
+                "accounts",
+                "applied",
+                "dense",
+                "energy",
+                "error",
+                "kinematics",
+                "lanes",
+            ],
+            &["watch"],
             &["course", "order", "shaft_loss"],
             &[
                 "articulation",
@@ -64,7 +73,8 @@ const CRATES: [Storeys; 6] = [
             &["summary"],
             &["run_in"],
             &["precision"],
-            &["statistic", "verdict"],
+            &["chain_verdict", "statistic"],
+            &["verdict"],
             &["describe"],
             &["page"],
             &["record"],

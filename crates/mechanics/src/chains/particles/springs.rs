@@ -1,7 +1,7 @@
 //! The forces of the links on the rollers.
 
 use chaindrive_geometry::{Point, Vector};
-use chaindrive_integrate::Array;
+use chaindrive_integrate::{Array, kernel};
 use pulp::Simd;
 
 use crate::Chain;
@@ -186,7 +186,28 @@ impl Links {
         loss.sum()
     }
 
-    /// Tension of one link between two pins with their velocities \[N\]. Asked for all links at every step.
+    /// Tension of every link \[N\], whole lanes; x, y and their rates are rows of the rollers.
+    #[inline(always)]
+    fn pull<S: Simd>(&self, w: Wide<S>, columns: [&[f64]; 4], tensions: &mut [f64]) {
+        let n = self.rest.len();
+        let own = [&self.rest, &self.stiffness, &self.damping];
+        let [rest, stiffness, damping] = own.map(|values| w.lanes(&values[..n]));
+        let [x, y, vx, vy] = columns.map(|values| w.lanes(&values[..n]));
+        let [x_next, y_next, vx_next, vy_next] = columns.map(|values| w.lanes(&values[1..=n]));
+        let mut tensions = Wide::<S>::lanes_mut(&mut tensions[..n]);
+        for i in 0..n / Wide::<S>::COUNT {
+            let [dx, dy] = [x_next.get(i) - x.get(i), y_next.get(i) - y.get(i)];
+            let [ux, uy] = [vx_next.get(i) - vx.get(i), vy_next.get(i) - vy.get(i)];
+            let square = (dx * dx).plus(dy, dy);
+            let inverse = square.inverse_root();
+            // T = k (ℓ − p) + d ℓ̇
+            let stretch = square * inverse - rest.get(i);
+            let drag = damping.get(i) * (dx * ux).plus(dy, uy) * inverse;
+            tensions.set(i, drag.plus(stiffness.get(i), stretch));
+        }
+    }
+
+    /// Tension of one link between two pins with their velocities \[N\].
     #[inline(always)]
     pub(crate) fn tension(&self, link: usize, pins: [(Point, Vector); 2]) -> f64 {
         let d = pins[1].0 - pins[0].0;
@@ -203,3 +224,15 @@ impl Links {
         0.5 * self.stiffness[link] * stretch * stretch
     }
 }
+
+kernel!(
+    /// Tension of every link: see [`Links::pull`].
+    pub(super) fn pulls<'a, S: Simd>(
+        w: Wide<S>,
+        links: &'a Links,
+        columns: [&'a [f64]; 4],
+        tensions: &'a mut [f64],
+    ) {
+        links.pull(w, columns, tensions);
+    }
+);

@@ -1,0 +1,91 @@
+//! Good practice of layouts, which is known before anything runs.
+
+use chaindrive_mechanics::{Drive, Layout, PlacedChain, Rotation, Stop, Support};
+
+use super::{Check, Limit};
+
+/// Centre distance in pitches from which on a chain conveys. *Assumed*: no drive is as long.
+const CONVEYS: f64 = 80.0;
+
+/// Checks of the layout of every chain; `wraps` of every sprocket \[rad\], where it is known.
+///
+/// Silent about chains with guides, with cages of a tensioner, and about conveyors: their rules are others.
+pub fn layout_checks(drive: &Drive, wraps: &[Option<f64>]) -> Vec<Check> {
+    let chains = drive.chains.iter();
+    chains
+        .flat_map(|placed| of_chain(drive, placed, wraps))
+        .collect()
+}
+
+fn of_chain(drive: &Drive, placed: &PlacedChain, wraps: &[Option<f64>]) -> Vec<Check> {
+    let of = placed.name.as_deref().unwrap_or_default();
+    let Layout::Route { stops: route, .. } = &placed.layout else {
+        return Vec::new();
+    };
+    let on_route: Vec<usize> = route
+        .iter()
+        .filter_map(|stop| match stop {
+            Stop::Sprocket(index) => Some(*index),
+            Stop::Guide(_) => None,
+        })
+        .collect();
+    let carried =
+        |index: &&usize| matches!(drive.sprockets[**index].support, Support::Tensioner(_));
+    let is_caged = on_route.iter().filter(carried).count() > 1;
+    let is_guided = !placed.guides.is_empty();
+    let carries_power = |index: &&usize| carries_power(drive, **index);
+    let powered: Vec<usize> = on_route.iter().filter(carries_power).copied().collect();
+    if is_guided || is_caged || powered.len() < 2 {
+        return Vec::new();
+    }
+    let centres = || {
+        let [first, second] = powered[..] else {
+            return None;
+        };
+        let [a, b] = [first, second].map(|index| drive.sprockets[index].centre);
+        Some((b - a).norm() / placed.chain.pitch)
+    };
+    let centres = centres();
+    if centres.is_some_and(|it| it > CONVEYS) {
+        return Vec::new();
+    }
+    let teeth = |index: &usize| drive.sprockets[*index].gap.teeth;
+    let smallest = powered.iter().min_by_key(|index| teeth(index));
+    let largest = powered.iter().map(teeth).max();
+    let (Some(smallest), Some(largest)) = (smallest, largest) else {
+        return Vec::new();
+    };
+    let name = drive.sprockets[*smallest].name.as_str();
+    let least = f64::from(teeth(smallest));
+    let mut checks = vec![
+        Check::of(Limit::Teeth, name, least).with(if least < LEAST_TEETH {
+            "11 at the least: assumed, Tsubaki recommends more than 13"
+        } else {
+            ""
+        }),
+        Check::of(Limit::Ratio, of, f64::from(largest) / least),
+    ];
+    let wrap = wraps.get(*smallest).copied().flatten();
+    checks.extend(wrap.map(|wrap| Check::of(Limit::Wrap, name, wrap.to_degrees())));
+    checks.extend(centres.map(|pitches| Check::of(Limit::Centres, of, pitches)));
+    checks
+}
+
+/// Teeth below which the warning has another word.
+const LEAST_TEETH: f64 = 11.0;
+
+/// Whether something drives or loads the shaft of a sprocket, or joins it to another one; idlers have nothing of it.
+fn carries_power(drive: &Drive, sprocket: usize) -> bool {
+    let index = drive.sprockets[sprocket].shaft;
+    let shaft = &drive.shafts[index];
+    let is_given = matches!(shaft.rotation, Rotation::Prescribed(_));
+    let shares = drive
+        .sprockets
+        .iter()
+        .filter(|it| it.shaft == index)
+        .count()
+        > 1;
+    let coupled = drive.couplings.iter().any(|it| it.shafts.contains(&index));
+    let geared = drive.gears.iter().any(|it| it.shafts.contains(&index));
+    is_given || shares || coupled || geared || shaft.torques().next().is_some()
+}

@@ -1,0 +1,124 @@
+//! Strength of the chains under the loads of a run.
+
+use chaindrive_mechanics::{Chain, Drive, MissingRating, PlacedChain};
+
+use super::{Check, CheckOutcome, Limit};
+use crate::rating::Rating;
+
+/// Newtons a square millimetre of a pascal.
+const PER_PASCAL: f64 = 1e-6;
+/// Elongation at which a chain is worn out \[–\]: of a large sprocket over its teeth, at most, and on fixed centres. Diamond Chain.
+const WORN: f64 = 0.03;
+const WORN_BY_TEETH: f64 = 2.0;
+const WORN_ON_FIXED_CENTRES: f64 = 0.015;
+
+/// Distance of the planes of two sprockets over that of their shafts that makers allow, and in fast drives: SEDIS, *Transmission chains*,
+/// 0.2 % and 0.1 %. Which drive is fast they do not say.
+pub(crate) const ALIGNED: f64 = 2e-3;
+pub(crate) const ALIGNED_FAST: f64 = 1e-3;
+
+/// Checks of the strength of every chain, in the order of the drive.
+pub(super) fn strength_checks(ratings: &[Rating], drive: &Drive) -> Vec<Check> {
+    let chains = ratings.iter().zip(&drive.chains);
+    let mut checks: Vec<Check> = chains
+        .flat_map(|(it, placed)| of_chain(it, placed, drive))
+        .collect();
+    checks.extend(out_of_line(drive));
+    checks
+}
+
+fn of_chain(rating: &Rating, placed: &PlacedChain, drive: &Drive) -> Vec<Check> {
+    let of = rating.chain.as_str();
+    let known = |limit: Limit, value: Option<f64>, why: &str| match value {
+        Some(value) => Check::of(limit, of, value),
+        None => Check::not_judged(limit, of, why),
+    };
+    let no_load = "no breaking load is known: give chain.breaking_load";
+    let pressure = rating.bearing_pressure.map(|it| PER_PASCAL * it);
+    let mut checks = vec![
+        known(Limit::StaticSafety, rating.static_safety, no_load),
+        known(Limit::DynamicSafety, rating.dynamic_safety, no_load),
+        known(
+            Limit::BearingPressure,
+            pressure,
+            "pin and bush are not known: give chain.bearing_area",
+        ),
+        worn(placed, of, drive),
+    ];
+    if rating.sprocket.is_some() {
+        checks.push(power(rating, of));
+        checks.push(Check::not_judged(Limit::Speed, of, Limit::Speed.source()));
+    }
+    checks
+}
+
+/// Power against the rating of the chain itself, or of its twin.
+fn power(rating: &Rating, of: &str) -> Check {
+    if let Some(share) = rating.utilisation() {
+        let by = rating.governing().map_or("", |(by, _)| by.name());
+        return Check::of(Limit::RatedPower, of, 100.0 * share).with(by);
+    }
+    let why = match &rating.limits {
+        Err(why) => why.to_string(),
+        Ok(_) => "nothing turns".to_owned(),
+    };
+    match (rating.twin, &rating.limits) {
+        (Some(twin), Err(MissingRating::SourceMissing { .. })) => {
+            let share = rating.service_factor * rating.carried / twin;
+            Check::of(Limit::TwinPower, of, 100.0 * share)
+        }
+        _ => Check::not_judged(Limit::RatedPower, of, &why),
+    }
+}
+
+/// Elongation of the chain as it is against what its use allows.
+fn worn(placed: &PlacedChain, of: &str, drive: &Drive) -> Check {
+    let own = |index: &usize| drive.sprockets[*index].gap.teeth;
+    let Some(teeth) = placed.sprockets.iter().map(own).max() else {
+        return Check::not_judged(Limit::Wear, of, "the chain passes no sprocket");
+    };
+    let limit = WORN.min(WORN_BY_TEETH / f64::from(teeth));
+    let is_fixed = !takes_up(placed, drive);
+    let limit = if is_fixed {
+        limit.min(WORN_ON_FIXED_CENTRES)
+    } else {
+        limit
+    };
+    let elongation = elongation(&placed.chain);
+    // What rounding makes of a new chain is no wear.
+    let elongation = if elongation > 1e-9 { elongation } else { 0.0 };
+    let on = if is_fixed { ", on fixed centres" } else { "" };
+    let note = format!("{:.2} % of {:.2} %{on}", 100.0 * elongation, 100.0 * limit);
+    Check::of(Limit::Wear, of, 100.0 * elongation / limit).with(&note)
+}
+
+/// Mean length of the links over the pitch, less one.
+fn elongation(chain: &Chain) -> f64 {
+    let mean = chain.lengths.iter().sum::<f64>() / chain.lengths.len() as f64;
+    mean / chain.pitch - 1.0
+}
+
+/// Whether something takes up what the chain grows by: a tensioner that carries a body that it touches, or a sprung centre.
+fn takes_up(placed: &PlacedChain, drive: &Drive) -> bool {
+    use chaindrive_mechanics::{GuideSupport, Support};
+    let by_sprocket = placed.sprockets.iter().any(|index| {
+        matches!(
+            drive.sprockets[*index].support,
+            Support::Tensioner(_) | Support::Springs { .. }
+        )
+    });
+    let by_guide = placed
+        .guides
+        .iter()
+        .any(|index| matches!(drive.guides[*index].support, GuideSupport::Tensioner(_)));
+    by_sprocket || by_guide
+}
+
+/// The span that is most out of line, where planes are known.
+fn out_of_line(drive: &Drive) -> Option<Check> {
+    let spans = drive.out_of_line().into_iter();
+    let spans = spans.map(|it| (it.offset / it.centres, it));
+    let (share, worst) = spans.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let check = Check::of(Limit::OutOfLine, &worst.span, 100.0 * share);
+    (check.outcome >= CheckOutcome::Pass).then_some(check)
+}
