@@ -14,6 +14,8 @@ mod stack;
 mod text;
 mod tolerance;
 
+use std::f64::consts::TAU;
+
 use chaindrive_geometry::mesh_frequency;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 use chaindrive_mechanics::{
@@ -34,7 +36,17 @@ pub use route::{SpanAtRest, StopFacts, spans_at_rest, wraps};
 pub use stack::{StackFacts, StackTermFacts};
 pub use tolerance::ToleranceFacts;
 
+use crate::chain_verdict::{CheckOutcome, layout_checks};
 use crate::{Run, SimulationError, rating};
+
+/// Checks of the layout that warn.
+fn against_practice(drive: &Drive, assembled: &Assembled) -> Vec<String> {
+    let checks = layout_checks(drive, &wraps(drive, assembled)).into_iter();
+    let warned = checks.filter(|check| check.outcome == CheckOutcome::Warning);
+    warned
+        .map(|check| format!("{check} ({})", check.limit.source()))
+        .collect()
+}
 
 /// A drive and a run, described.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
@@ -72,6 +84,8 @@ pub struct Description {
     pub cost: Cost,
     /// Bodies that take the same room in the plane, and must pass side by side; guides that are too short; motions that fight.
     pub warnings: Vec<String>,
+    /// What of the layout is against good practice, with the limit and its source.
+    pub against_practice: Vec<String>,
 }
 
 /// A chain in numbers.
@@ -210,7 +224,7 @@ pub struct TimeScales {
     pub stiffest: f64,
     /// The same with the damping left out \[s\].
     pub undamped: f64,
-    /// Speed of the fastest roller \[m/s\].
+    /// Mean speed of the fastest chain \[m/s\]; where none runs around a sprocket that of the fastest roller at the start.
     pub chain_speed: f64,
     /// Frequency \[Hz\] at which rollers seat on every sprocket.
     pub mesh_frequencies: Vec<(String, f64)>,
@@ -242,7 +256,16 @@ impl Description {
             .iter()
             .zip(&start.roller_vy)
             .map(|(x, y)| speed(*x, *y));
-        let meshing = drive.sprockets.iter().zip(&start.sprocket_speed);
+        let mean_speeds = assembled.mean_speeds();
+        // v = z p ω/2π
+        let running = drive.chains.iter().filter_map(|placed| {
+            let first = *placed.sprockets.first()?;
+            let teeth = f64::from(drive.sprockets[first].gap.teeth);
+            Some(teeth * placed.chain.pitch * mean_speeds[first].abs() / TAU)
+        });
+        let fastest = speeds.fold(0.0, f64::max);
+        let chain_speed = running.reduce(f64::max).unwrap_or(fastest);
+        let meshing = drive.sprockets.iter().zip(&mean_speeds);
         let mesh = meshing.map(|(s, speed)| (s.name.clone(), mesh_frequency(s.gap.teeth, *speed)));
         let chains = drive.chains.iter().zip(&assembled.fittings);
         let mut chains: Vec<ChainFacts> = chains
@@ -269,12 +292,13 @@ impl Description {
             time_scales: TimeScales {
                 stiffest: system.time_scale(),
                 undamped: system.undamped_time_scale(),
-                chain_speed: speeds.fold(0.0, f64::max),
+                chain_speed,
                 mesh_frequencies: mesh.collect(),
             },
             polygon: polygon::pairs(drive, &start),
             cost: cost::measure(assembled, run)?,
             warnings: warnings(assembled, run.until),
+            against_practice: against_practice(drive, assembled),
             spans,
         })
     }

@@ -116,6 +116,7 @@ mod course;
 mod dense;
 mod drive;
 mod energy;
+mod engagement;
 mod error;
 mod events;
 mod forcing;
@@ -165,6 +166,7 @@ pub use drive::{
     Tighten, Touches, Tunable,
 };
 pub use energy::{Energy, Flow, Place, Store};
+pub use engagement::engagement_wave;
 pub use error::{AssemblyError, Clash, DriveError, MemoryError, Pull};
 pub use joints::{Clearance, FreeRoller};
 pub use kinematics::Kinematics;

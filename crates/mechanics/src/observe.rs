@@ -62,6 +62,14 @@ impl System {
             .collect()
     }
 
+    /// Sprockets at both ends of every span, by index, in the order of [`span_names`](Self::span_names).
+    pub fn span_sprockets(&self) -> Vec<[usize; 2]> {
+        let routes = self.chains.iter().map(|member| &member.route);
+        routes
+            .flat_map(|route| (0..route.len()).map(|i| [route[i], route[(i + 1) % route.len()]]))
+            .collect()
+    }
+
     /// Number of sprockets that turn by themselves, and of those whose rotation is given, directly or through gears.
     pub fn turning_sprockets(&self) -> [usize; 2] {
         let wheels = &self.bodies.wheels;

@@ -34,6 +34,9 @@ impl fmt::Display for Description {
         for warning in &self.warnings {
             writeln!(sheet, "warning: {warning}")?;
         }
+        for remark in &self.against_practice {
+            writeln!(sheet, "good practice: {remark}")?;
+        }
         f.write_str(&aligned(&sheet, NAMES))
     }
 }

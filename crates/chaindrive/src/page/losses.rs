@@ -1,6 +1,6 @@
 //! Losses by place, balance of powers, efficiency.
 
-use chaindrive_mechanics::{Place, warming};
+use chaindrive_mechanics::{Place, engagement_wave, warming};
 
 use super::Section;
 use super::sections::PageContent;
@@ -20,6 +20,7 @@ impl PageContent<'_> {
                 section.rows.push(vec![place.to_owned(), power, share]);
             }
         }
+        section.sentences.extend(self.waves());
         section.sentences.extend(self.balance());
         section.sentences.push(self.efficiency());
         section.sentences.extend(self.warmth());
@@ -72,11 +73,42 @@ impl PageContent<'_> {
         format!("Efficiency: none, {why}.")
     }
 
+    /// What engagement sends into the spans as waves, most of which joints lose beside what wrapping costs them.
+    fn waves(&self) -> Option<String> {
+        let system = self.simulation.system();
+        let drive = &self.simulation.assembled().drive;
+        let ends = system.span_sprockets();
+        let of_span = |(index, ends): (usize, &[usize; 2])| {
+            let tension = self.summary.spans[index].mean();
+            let sprockets = &self.bodies.sprockets;
+            let chain = sprockets.get(ends[0])?.chain;
+            let placed = &drive.chains[chain].chain;
+            let mass = placed.masses.iter().sum::<f64>() / placed.masses.len() as f64;
+            let speed = self.chain_speed(chain)?;
+            let waves = ends.iter().map(|end| {
+                engagement_wave(sprockets[*end].teeth, tension, mass / placed.pitch, speed)
+            });
+            tension.is_finite().then(|| waves.sum::<f64>())
+        };
+        let waves: f64 = ends.iter().enumerate().filter_map(of_span).sum();
+        (waves > 0.0).then(|| {
+            format!(
+                "Engagement sends waves of some {} into the spans; joints lose most of it beside what wrapping costs them.",
+                Measure::Power.told(waves)
+            )
+        })
+    }
+
     /// By how much the only chain becomes warmer than the air around it; what is lost is not told apart by chains.
     fn warmth(&self) -> Option<String> {
-        let [placed] = &self.simulation.assembled().drive.chains[..] else {
+        let drive = &self.simulation.assembled().drive;
+        let [placed] = &drive.chains[..] else {
             return None;
         };
+        // Oil carries more heat away than the air that is reckoned with.
+        if drive.oil.is_some() {
+            return None;
+        }
         let inside = [Place::Joints, Place::Rollers, Place::Seals, Place::Offset];
         let balance = self.summary.balance()?;
         let lost = balance.losses.iter();

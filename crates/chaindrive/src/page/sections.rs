@@ -384,7 +384,9 @@ impl PageContent<'_> {
         for (index, it) in self.bodies.sprockets.iter().enumerate() {
             // δ = (ω_max − ω_min)/ω̄
             let irregularity = it.speeds.range() / it.speed.abs();
-            if !irregularity.is_finite() {
+            // What swings to and fro has no mean speed to speak of.
+            let swings = it.speeds.least < 0.0 && it.speeds.greatest > 0.0;
+            if !irregularity.is_finite() || swings {
                 continue;
             }
             let lag = if it.leader() == index {

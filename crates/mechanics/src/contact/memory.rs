@@ -131,25 +131,19 @@ impl ContactMemory {
 
     /// Greatest force of one circle \[N\]: those on all sides of its slot add up, which stand `slots` after each other.
     pub(crate) fn greatest_force(&self, slots: usize) -> f64 {
-        let forces = |block: &[f64]| -> [f64; LANES] {
-            let first = MemoryField::Force as usize * LANES;
-            std::array::from_fn(|k| block[first + k])
-        };
         let side = blocks(slots);
-        let mut greatest = [0.0; LANES];
-        for place in (0..side.min(self.numbers.len())).step_by(BLOCK) {
-            let mut sum = [0.0; LANES];
-            for block in self.numbers[place..].chunks(side).map(|it| &it[..BLOCK]) {
-                let own = forces(block);
-                sum = std::array::from_fn(|k| sum[k] + own[k]);
-            }
-            greatest = std::array::from_fn(|k| {
-                if sum[k] > greatest[k] {
-                    sum[k]
-                } else {
-                    greatest[k]
+        let mut greatest = [0.0_f64; LANES];
+        for first in (0..side).step_by(BLOCK) {
+            let mut forces = [0.0; LANES];
+            for place in (first..self.numbers.len()).step_by(side) {
+                let at = place + MemoryField::Force as usize * LANES;
+                for (force, own) in forces.iter_mut().zip(&self.numbers[at..at + LANES]) {
+                    *force += own;
                 }
-            });
+            }
+            for (greatest, force) in greatest.iter_mut().zip(forces) {
+                *greatest = if force > *greatest { force } else { *greatest };
+            }
         }
         greatest.into_iter().fold(0.0, f64::max)
     }

@@ -112,8 +112,15 @@ impl Watch {
             extremes.lag.see(lag, t);
         }
         for (member, record) in system.chains.iter().zip(&record.chains) {
-            for (on, touch) in member.contacts.teeth.iter().zip(&record.loads.teeth) {
-                let greatest = touch.state.greatest_force(on.contacts.slots);
+            let loads = &record.loads;
+            let found = loads.teeth.iter().zip(&loads.wheel_wrenches);
+            for (on, (touch, wrench)) in member.contacts.teeth.iter().zip(found) {
+                // Where nothing is indented nothing presses.
+                let greatest = if wrench.depth > 0.0 {
+                    touch.state.greatest_force(on.contacts.slots)
+                } else {
+                    0.0
+                };
                 sprockets[on.wheel].contact.see(greatest, t);
             }
         }

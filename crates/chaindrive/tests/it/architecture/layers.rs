@@ -24,7 +24,7 @@ const CRATES: [Storeys; 6] = [
                 "kinematics",
                 "lanes",
             ],
-            &["watch"],
+            &["engagement", "watch"],
             &["course", "order", "shaft_loss"],
             &[
                 "articulation",
