@@ -1,4 +1,4 @@
-//! Whether the chains may carry their loads: a verdict on the drive, beside the one on the numbers.
+//! The verdict on the chains of a drive, beside the one on the numbers: strength under their loads, and layout.
 //!
 //! | outcome | means |
 //! |---|---|
@@ -26,7 +26,7 @@ use crate::zarr::Story;
 pub use layout::layout_checks;
 pub(crate) use strength::{ALIGNED, ALIGNED_FAST};
 
-/// What became of a check, the best first.
+/// Outcome of a check, the best first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CheckOutcome {
@@ -52,7 +52,7 @@ impl CheckOutcome {
     }
 }
 
-/// On which side of its bounds a value is safe.
+/// Safe side of the bounds of a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// At the bound or above.
@@ -90,7 +90,7 @@ macro_rules! limits {
                 match self { $(Self::$variant => $unit),* }
             }
 
-            /// On which side of the bounds a value is safe.
+            /// Safe side of the bounds.
             pub fn side(self) -> Side {
                 match self { $(Self::$variant => Side::$side),* }
             }
@@ -105,7 +105,7 @@ macro_rules! limits {
                 match self { $(Self::$variant => $fail),* }
             }
 
-            /// Where the bounds are from.
+            /// Source of the bounds.
             pub fn source(self) -> &'static str {
                 match self { $(Self::$variant => $source),* }
             }
@@ -137,9 +137,9 @@ pub struct Check {
     pub of: String,
     /// The value, in the unit of the limit; none where it is not known.
     pub value: Option<f64>,
-    /// What became of it.
+    /// Its outcome.
     pub outcome: CheckOutcome,
-    /// Why it could not be judged, or what the value is one of; empty where there is nothing to add.
+    /// A remark: the reason for no judgement, or the origin of the value; empty without one.
     pub note: String,
 }
 

@@ -74,7 +74,7 @@ fn of_chain(drive: &Drive, placed: &PlacedChain, wraps: &[Option<f64>]) -> Vec<C
 /// Teeth below which the warning has another word.
 const LEAST_TEETH: f64 = 11.0;
 
-/// Whether something drives or loads the shaft of a sprocket, or joins it to another one; idlers have nothing of it.
+/// A sprocket carries power where its shaft is driven, loaded or joined to another one. An idler is none of these.
 fn carries_power(drive: &Drive, sprocket: usize) -> bool {
     let index = drive.sprockets[sprocket].shaft;
     let shaft = &drive.shafts[index];

@@ -33,7 +33,7 @@ pub(super) struct PeriodEnd {
     accounts: Accounts,
 }
 
-/// Readings of the spans in the time that a tooth of the fastest sprocket takes. *Assumed*: the third harmonic of the mesh has 21 of them.
+/// Readings of the spans while one tooth of the fastest sprocket passes. *Assumed*: the third harmonic of the mesh has 21 of them.
 const READINGS_A_TOOTH: f64 = 64.0;
 /// The same in a run in which nothing turns.
 const READINGS_A_RUN: f64 = 4096.0;
@@ -69,7 +69,7 @@ pub(super) fn plan(assembled: &Assembled, run: &Run) -> WatchPlan {
 
 impl Moving {
     /// What stands in the accounts at a time \[s\] within the last step, on the clock of the drive.
-    fn account_at(&self, time: f64, record: &mut Record, seen: &mut Observation) -> PeriodEnd {
+    fn account_at(&self, time: f64, record: &mut Record) -> PeriodEnd {
         let Self { system, state, .. } = self;
         let (mut q, mut v) = (vec![0.0; state.q.len()], vec![0.0; state.v.len()]);
         let (mut quadratures, mut z) =
@@ -83,7 +83,8 @@ impl Moving {
             laws: true,
             spans: false,
         };
-        system.observe_some(energies, at, &quadratures, record, seen);
+        let mut seen = Observation::default();
+        system.observe_some(energies, at, &quadratures, record, &mut seen);
         PeriodEnd {
             time,
             energy: seen.energy,
@@ -136,17 +137,15 @@ impl Simulation {
     /// Begins the account where the drive stands.
     pub(super) fn open_account(&mut self) {
         if self.moving.system.watch_plan().is_some() {
-            let mut seen = Observation::default();
             let time = self.moving.state.t;
-            self.period_end = self.moving.account_at(time, &mut self.record, &mut seen);
+            self.period_end = self.moving.account_at(time, &mut self.record);
         }
     }
 
     /// Takes in the periods that ended in the last step.
     pub(super) fn end_periods(&mut self) {
         for (time, extremes) in self.moving.system.hand_out_periods() {
-            let mut seen = Observation::default();
-            let end = self.moving.account_at(time, &mut self.record, &mut seen);
+            let end = self.moving.account_at(time, &mut self.record);
             self.periods[1].push(self.period_end.to(&end, extremes));
             self.period_end = end;
         }
@@ -188,9 +187,7 @@ impl Simulation {
         let end = self.moving.state.t.min(zero + self.until);
         let mut periods = self.periods[1].clone();
         if end > self.period_end.time {
-            let mut record = system.new_record();
-            let mut seen = Observation::default();
-            let end = self.moving.account_at(end, &mut record, &mut seen);
+            let end = self.moving.account_at(end, &mut system.new_record());
             periods.push(self.period_end.to(&end, extremes.clone()));
         }
         for it in &mut periods {

@@ -11,7 +11,7 @@ use crate::rating::SprocketDuty;
 /// A force over the run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceRecord {
-    /// Mean over whole periods, x and y \[N\]; not a number for the force of one roller.
+    /// Mean over whole periods, x and y \[N\].
     pub mean: [f64; 2],
     /// Extremes of its magnitude over all steps \[N\].
     pub extremes: Extremes,
@@ -44,14 +44,13 @@ pub struct SprocketStatistics {
     pub power: f64,
     /// Force of the chain, which its bearings bear.
     pub force: ForceRecord,
-    /// Force of one roller on its teeth.
-    pub contact: ForceRecord,
+    /// Extremes of the force of one roller on its teeth \[N\].
+    pub contact: Extremes,
     /// Extremes of its speed \[rad/s\].
     pub speeds: Extremes,
     /// Extremes of its angle beyond that of an exact ratio to the sprocket that leads its chain \[rad\]: the transmission error.
     pub lag: Extremes,
-    /// The sprocket that leads, by index, and the exact ratio to it.
-    leader: (usize, f64),
+    leader: usize,
 }
 
 impl SprocketStatistics {
@@ -68,7 +67,7 @@ impl SprocketStatistics {
 
     /// Index of the sprocket that its speed ratio and transmission error are measured from.
     pub fn leader(&self) -> usize {
-        self.leader.0
+        self.leader
     }
 }
 
@@ -113,7 +112,7 @@ struct SprocketNames {
     chain: usize,
     teeth: u32,
     shaft: usize,
-    leader: (usize, f64),
+    leader: usize,
 }
 
 impl BodyNames {
@@ -126,7 +125,7 @@ impl BodyNames {
                 chain: chain.unwrap_or(0),
                 teeth: it.gap.teeth,
                 shaft: it.shaft,
-                leader: drive.leader(index),
+                leader: drive.leader(index).0,
             }
         };
         let unit = |it: &chaindrive_mechanics::Tensioner| it.carrier.coordinate_unit().to_owned();
@@ -172,11 +171,7 @@ impl BodyNames {
                     |all, index| &all.sprockets[index].force,
                     index,
                 ),
-                contact: record(
-                    [f64::NAN; 2],
-                    |all, index| &all.sprockets[index].contact,
-                    index,
-                ),
+                contact: seen.contact,
                 speeds: seen.speed,
                 lag: seen.lag,
                 leader: it.leader,

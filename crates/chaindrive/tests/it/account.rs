@@ -131,12 +131,7 @@ fn numbers(summary: &Summary) -> Vec<f64> {
     for it in &bodies.sprockets {
         numbers.extend([it.speed, it.torque, it.power]);
         numbers.extend(it.force.mean);
-        for seen in [
-            &it.force.extremes,
-            &it.contact.extremes,
-            &it.speeds,
-            &it.lag,
-        ] {
+        for seen in [&it.force.extremes, &it.contact, &it.speeds, &it.lag] {
             numbers.extend(both(seen));
         }
         numbers.extend(it.force.usual_greatest.map(|it| it.value));
@@ -214,7 +209,7 @@ fn a_mesh_period_between_samples_makes_no_power() {
     );
 }
 
-/// The force of one roller on a sprocket is no more than the bearing has at that time, or another one pulls it back.
+/// S2: no sample lies beyond the extremes of steps.
 #[test]
 fn extremes_hold_those_of_samples() {
     let scene = Scene::preset("marine_two_sprockets").unwrap();

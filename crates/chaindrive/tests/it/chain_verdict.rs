@@ -19,10 +19,10 @@ fn chains(scene: &Scene, until: &str) -> ChainVerdict {
     report.verdict.chains
 }
 
-/// Written down before they were run, from catalogue and loads. `industrial_16b`: 60 kN over some 6.5 kN, pins of 210 mm² (31 N/mm²), 15 kW beside
+/// By hand, from catalogue and loads. `industrial_16b`: 60 kN over some 6.5 kN, pins of 210 mm² (31 N/mm²), 15 kW beside
 /// the 12.2 kW of number 80; nobody knows the strength of the timing chain, and a guided drive is not held against rules for plain ones.
 #[test]
-fn presets_get_what_was_written_down() {
+fn presets_get_what_a_hand_computation_gives() {
     for (name, until, outcome, reasons) in [
         (
             "industrial_16b",
