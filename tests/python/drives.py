@@ -122,3 +122,20 @@ def random_drive(seed: int) -> cd.Drive:
     scene["chain"]["links"] = nearest
     scene["route"]["adjust"] = moves
     return cd.Drive.from_dict(scene)
+
+
+def swinging_drive(seed: int) -> cd.Drive:
+    """Return a drawn drive whose driver and load swing by orders of their shafts, with a chain of the catalogue and default contacts."""
+    drive = random_drive(seed).to_dict()
+    lot = random.Random(10_000 + seed)
+    driver, driven = drive["sprockets"][:2]
+    orders = lot.sample([1, 2, 3, 4, 5, 7], 2)
+    speed = driver["motion"]["speed"]
+    terms = [{"order": orders[0], "amplitude": lot.uniform(1e-4, 2e-3)}]
+    driver["motion"] = {"kind": "orders", "speed": speed, "terms": terms}
+    [steady] = driven["load"]
+    amplitude = lot.uniform(0.1, 0.6) * abs(steady["torque"])
+    swing = {"kind": "harmonic", "amplitude": amplitude, "order": orders[1]}
+    driven["load"] = [steady, swing]
+    del drive["contact"]
+    return cd.Drive.from_dict(drive)

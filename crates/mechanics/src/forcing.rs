@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::assembly::Assembled;
 use crate::drive::{GuideSupport, Layout, Rotation, Shaft, Stop, Support};
-use crate::order::Order;
+use crate::order::Forcing;
 use crate::torque::Argument;
 use crate::{End, Ends, Motion, Torque};
 
@@ -20,46 +20,70 @@ impl Assembled {
     ///
     /// Faster forcings need not fit into it: orders 4 and 7 of a shaft repeat together with its turn only.
     pub fn slowest_forcing(&self) -> f64 {
-        let speeds = self.mean_speeds();
-        let wheels = &self.system.bodies.wheels;
-        let shafts = self.shaft_speeds();
-        let of_shaft = |shaft: usize| {
-            let on_it = wheels.iter().position(|wheel| wheel.shaft == shaft);
-            let present = on_it.map_or(0.0, |wheel| speeds[wheel]);
-            shafts[shaft].unwrap_or(present)
-        };
-        let mut slowest: f64 = 0.0;
-        let mut repeats = |period: f64| slowest = slowest.max(period.abs());
-        repeats(self.slowest_tooth());
-        for motion in self.motions() {
-            periods(motion, &mut repeats);
-        }
-        for (shaft, it) in self.drive.shafts.iter().enumerate() {
-            for torque in it.torques() {
-                let turning = of_shaft(torque.follows().unwrap_or(shaft));
-                match torque {
-                    Torque::Orders { terms, .. } => {
-                        for order in terms {
-                            period(order, turning, &mut repeats);
-                        }
-                    }
-                    Torque::Table {
-                        over: Argument::Angle { turns, .. },
-                        curve,
-                    } => {
-                        let whole = f64::from(*turns) * TAU;
-                        let order = lowest_order(whole, |angle| curve.polyline(angle));
-                        repeats(whole / (order * turning));
-                    }
-                    _ => {}
-                }
-            }
-        }
+        let periods = self.forcings().into_iter().map(|it| it.period);
+        let slowest = periods.fold(self.slowest_tooth(), f64::max);
         if slowest > 0.0 {
             slowest
         } else {
             f64::INFINITY
         }
+    }
+
+    /// All that is known to repeat, see [`slowest_forcing`](Self::slowest_forcing): the slowest first, each period once.
+    pub fn forcings(&self) -> Vec<Forcing> {
+        let speeds = self.mean_speeds();
+        let wheels = &self.system.bodies.wheels;
+        let given = self.shaft_speeds();
+        let mut found: Vec<Forcing> = Vec::new();
+        let mut repeats = |shaft: Option<usize>, rate: f64, period: f64| {
+            found.push(Forcing {
+                shaft,
+                rate,
+                period: period.abs(),
+            });
+        };
+        // An order of a shaft, which is a frequency where its mean speed is given.
+        let mut turns = |shaft: usize, order: f64| {
+            if let Some(speed) = given[shaft] {
+                repeats(None, order * speed, TAU / (order * speed));
+            } else {
+                let on_it = wheels.iter().position(|wheel| wheel.shaft == shaft);
+                let present = on_it.map_or(0.0, |wheel| speeds[wheel]);
+                repeats(Some(shaft), order, TAU / (order * present));
+            }
+        };
+        for wheel in self.system.chains.iter().filter_map(|it| it.route.first()) {
+            let wheel = &wheels[*wheel];
+            turns(wheel.shaft, f64::from(wheel.teeth));
+        }
+        for (shaft, it) in self.drive.shafts.iter().enumerate() {
+            for torque in it.torques() {
+                let shaft = torque.follows().unwrap_or(shaft);
+                match torque {
+                    Torque::Orders { terms, .. } => {
+                        for order in terms.iter().filter(|it| it.acts()) {
+                            turns(shaft, order.order);
+                        }
+                    }
+                    Torque::Table {
+                        over: Argument::Angle { turns: whole, .. },
+                        curve,
+                    } => {
+                        let whole = f64::from(*whole);
+                        for order in orders(|share| curve.polyline(TAU * whole * share)) {
+                            turns(shaft, f64::from(order) / whole);
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        }
+        for motion in self.motions() {
+            frequencies(motion, &mut |rate| repeats(None, rate, TAU / rate));
+        }
+        found.sort_by(|a, b| b.period.total_cmp(&a.period));
+        found.dedup_by(|a, b| a.shaft == b.shaft && (a.period / b.period - 1.0).abs() < 1e-9);
+        found
     }
 
     /// Time \[s\] in which a tooth passes, of the slowest chain; 0 where none runs around sprockets, infinite where it stands still.
@@ -159,21 +183,20 @@ impl Assembled {
     }
 }
 
-/// Tells the periods of a motion \[s\].
-fn periods(motion: &Motion, repeats: &mut impl FnMut(f64)) {
+/// Tells the circular frequencies of a motion \[rad/s\].
+fn frequencies(motion: &Motion, repeats: &mut impl FnMut(f64)) {
     match motion {
         Motion::Orders { turning, terms, .. } => {
-            for order in terms {
-                period(order, *turning, repeats);
-            }
+            let swinging = terms.iter().filter(|it| it.acts());
+            swinging.for_each(|it| repeats(it.order * turning));
         }
         Motion::Harmonics { terms, .. } => {
             let swinging = terms
                 .iter()
                 .filter(|it| it.amplitude != 0.0 && it.frequency > 0.0);
-            swinging.for_each(|it| repeats(1.0 / it.frequency));
+            swinging.for_each(|it| repeats(TAU * it.frequency));
         }
-        Motion::From { motion, .. } => periods(motion, repeats),
+        Motion::From { motion, .. } => frequencies(motion, repeats),
         Motion::Held
         | Motion::Constant { .. }
         | Motion::Ramp { .. }
@@ -182,21 +205,14 @@ fn periods(motion: &Motion, repeats: &mut impl FnMut(f64)) {
     }
 }
 
-/// Tells the period of an order of a shaft of some speed \[rad/s\].
-fn period(order: &Order, turning: f64, repeats: &mut impl FnMut(f64)) {
-    if order.amplitude != 0.0 && order.order != 0.0 {
-        repeats(TAU / (order.order * turning));
-    }
-}
-
-/// The lowest order of a curve over a whole that counts.
+/// Orders of a curve over a whole that count, at least one of them, the lowest first.
 ///
 /// ```text
-/// cₖ = |Σ f(x) exp(−2πi k x)|,   k the least with cₖ ≥ 1 % of the greatest
+/// cₖ = |Σ f(x) exp(−2πi k x)|,   all k with cₖ ≥ 1 % of the greatest
 /// ```
-fn lowest_order(whole: f64, curve: impl Fn(f64) -> f64) -> f64 {
+fn orders(curve: impl Fn(f64) -> f64) -> Vec<u32> {
     let points: Vec<f64> = (0..POINTS)
-        .map(|i| curve(whole * f64::from(i) / f64::from(POINTS)))
+        .map(|i| curve(f64::from(i) / f64::from(POINTS)))
         .collect();
     let amplitude = |order: u32| {
         let turns = (0..POINTS).map(|i| TAU * f64::from(order * i % POINTS) / f64::from(POINTS));
@@ -206,10 +222,14 @@ fn lowest_order(whole: f64, curve: impl Fn(f64) -> f64) -> f64 {
         let [re, im] = parts.fold([0.0; 2], |[re, im], [c, s]| [re + c, im + s]);
         re.hypot(im)
     };
-    let amplitudes: Vec<f64> = (1..=MOST_ORDERS).map(amplitude).collect();
-    let counts = COUNTS * amplitudes.iter().copied().fold(0.0, f64::max);
-    let lowest = amplitudes.iter().position(|it| *it > 0.0 && *it >= counts);
-    lowest.map_or(1.0, |at| (at + 1) as f64)
+    let amplitudes: Vec<(u32, f64)> = (1..=MOST_ORDERS).map(|k| (k, amplitude(k))).collect();
+    let counts = COUNTS * amplitudes.iter().map(|it| it.1).fold(0.0, f64::max);
+    let counting = amplitudes.iter().filter(|it| it.1 > 0.0 && it.1 >= counts);
+    let mut orders: Vec<u32> = counting.map(|it| it.0).collect();
+    if orders.is_empty() {
+        orders.push(1);
+    }
+    orders
 }
 
 fn of_time(motion: &Motion) -> Option<&'static str> {
@@ -227,13 +247,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_lowest_order_of_a_table_is_found() {
-        let lobes = |n: f64| move |angle: f64| 5.0 + (n * angle).sin().max(0.0);
-        for (curve, order) in [(lobes(1.0), 1.0), (lobes(7.0), 7.0), (lobes(2.0), 2.0)] {
-            assert!((lowest_order(TAU, curve) - order).abs() < 1e-12);
+    fn the_orders_of_a_table_are_found() {
+        let lobes = |n: f64| move |share: f64| 5.0 + (n * TAU * share).sin().max(0.0);
+        for (curve, order) in [(lobes(1.0), 1), (lobes(7.0), 7), (lobes(2.0), 2)] {
+            let found = orders(curve);
+            // A half wave has its order and the even multiples of it.
+            assert_eq!(found[..3], [order, 2 * order, 4 * order]);
         }
-        let uneven = |angle: f64| (4.0 * angle).sin() + 0.02 * angle.cos();
-        assert!((lowest_order(TAU, uneven) - 1.0).abs() < 1e-12);
-        assert!((lowest_order(TAU, |_| 3.0) - 1.0).abs() < 1e-12);
+        let uneven = |share: f64| (4.0 * TAU * share).sin() + 0.02 * (TAU * share).cos();
+        assert_eq!(orders(uneven), [1, 4]);
+        assert_eq!(orders(|_| 3.0), [1]);
     }
 }

@@ -133,6 +133,11 @@ impl<S: Simd> Lanes<'_, S> {
 
 impl<S: Simd> LanesMut<'_, S> {
     #[inline(always)]
+    pub(crate) fn get(&self, w: Wide<S>, lane: usize) -> Lane<S> {
+        w.lane(self.whole[lane])
+    }
+
+    #[inline(always)]
     pub(crate) fn set(&mut self, lane: usize, value: Lane<S>) {
         self.whole[lane] = value.v;
     }

@@ -174,7 +174,7 @@ pub use modes::{Mode, Modes};
 pub use motion::{Harmonic, Motion, Table};
 pub use motion_conflicts::MotionConflict;
 pub use observe::{ChainSize, Sights};
-pub use order::Order;
+pub use order::{Forcing, Order};
 pub use pose::{
     Body, BodyKind, Figure, FigureChain, Instant, MissingChannel, Placement, PlateShape, Pose,
 };

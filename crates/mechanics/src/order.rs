@@ -1,4 +1,6 @@
-//! Periods that repeat with the turns of a shaft.
+//! What repeats: orders of the turns of a shaft, and frequencies.
+
+use serde::{Deserialize, Serialize};
 
 use crate::DriveError;
 
@@ -14,6 +16,11 @@ pub struct Order {
 }
 
 impl Order {
+    /// Whether it swings at all.
+    pub(crate) fn acts(&self) -> bool {
+        self.amplitude != 0.0 && self.order != 0.0
+    }
+
     /// Names the first parameter that is not finite.
     ///
     /// # Errors
@@ -29,4 +36,15 @@ impl Order {
         }
         Ok(())
     }
+}
+
+/// Something that repeats: a tooth that passes, an order of a shaft or of its torque, a term of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Forcing {
+    /// Shaft whose turns it follows; none where it follows time, as it does where a motion turns the shaft.
+    pub shaft: Option<usize>,
+    /// Phase for each radian that the shaft turns \[–\], or for each second \[rad/s\].
+    pub rate: f64,
+    /// Period at the mean speed \[s\].
+    pub period: f64,
 }

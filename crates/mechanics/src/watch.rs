@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::MemoryError;
 use crate::kinematics::Kinematics;
+use crate::order::Forcing;
 
 /// Least and greatest value of a quantity, and when it had them \[s\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -145,6 +146,10 @@ pub struct WatchPlan {
     pub begin: f64,
     /// Length of a period \[s\]; infinite where nothing repeats.
     pub period: f64,
+    /// Periods in which everything known repeats together; 1 also where that is not seen.
+    pub together: u32,
+    /// What repeats, as far as it is to be told from chance: with every reading of the spans comes the phase of each.
+    pub forcings: Vec<Forcing>,
     /// Least time between two readings of the spans \[s\], positive.
     pub interval: f64,
     /// For every sprocket the one that its transmission error is measured from, and the exact ratio to it.
@@ -168,7 +173,7 @@ pub(crate) struct Watch {
     pub(crate) is_looking: bool,
     /// Rollers between which each span lies, within its chain; none where one of its sprockets holds no roller.
     pub(crate) ends: Vec<Option<(usize, usize)>>,
-    /// Readings that were not handed out: time, tension of every span, number of pressed links of every chain.
+    /// Readings that were not handed out: time, tension of every span, number of pressed links of every chain, phase of every forcing.
     pub(crate) readings: Vec<f64>,
     #[serde(skip)]
     pub(crate) work: WatchWork,

@@ -41,20 +41,48 @@ const READINGS_A_RUN: f64 = 4096.0;
 /// Share of the greatest span tension by which a link is pressed to count as pressed. *Assumed*: less is the swing of its own mass.
 pub(crate) const PRESSED: f64 = 0.05;
 
-/// Numbers in a reading of the spans: time, tensions, pressed links.
+/// Forcings that are told from chance. *Assumed*: the slowest disturb means of short records most.
+const MOST_FORCINGS: usize = 6;
+/// Periods of the slowest forcing in which all are looked at for repeating together, and how near to a whole number of periods.
+const TOGETHER: u32 = 12;
+const WHOLE: f64 = 1e-6;
+
+/// Numbers in a reading of the spans: time, tensions, pressed links, phases.
 pub(super) fn reading_length(system: &System) -> usize {
     let chains = system.chain_sizes();
     let spans: usize = chains.iter().map(|(_, size)| size.spans).sum();
-    1 + spans + chains.len()
+    let phases = system.watch_plan().map_or(0, |plan| plan.forcings.len());
+    1 + spans + chains.len() + phases
+}
+
+/// Whether so many periods of something go into a time, but for rounding.
+fn are_whole(time: f64, period: f64) -> bool {
+    let periods = time / period;
+    (periods - periods.round()).abs() < WHOLE * periods
 }
 
 /// How the steps of a run are watched.
 pub(super) fn plan(assembled: &Assembled, run: &Run) -> WatchPlan {
     let drive = &assembled.drive;
     let tooth = assembled.fastest_tooth();
+    let period = assembled.slowest_forcing();
+    let mut forcings = assembled.forcings();
+    forcings.retain(|it| it.period.is_finite());
+    let together = |periods: &u32| {
+        let time = f64::from(*periods) * period;
+        forcings.iter().all(|it| are_whole(time, it.period))
+    };
+    let together = (1..=TOGETHER).find(together).unwrap_or(1);
+    // What is whole in every period disturbs no mean of periods; beside others it does.
+    if (forcings.iter()).all(|it| it.shaft.is_none() && are_whole(period, it.period)) {
+        forcings.clear();
+    }
+    forcings.truncate(MOST_FORCINGS);
     WatchPlan {
         begin: assembled.time,
-        period: assembled.slowest_forcing(),
+        period,
+        together,
+        forcings,
         interval: if tooth.is_finite() {
             tooth / READINGS_A_TOOTH
         } else {

@@ -4,9 +4,14 @@
 //! period: a mean over m + ½ periods of amplitude A errs by A/(π m), where the mean over m periods does not err at all. So samples go into
 //! blocks of whole periods, and what fills none is left out once there are three. When there are many blocks, neighbours are joined.
 //!
+//! What repeats in another time than the slowest is no whole number of periods in a block. Where all of it [together](Blocks::together) repeats in some
+//! blocks, those are one, if there are three such. Where it does not, its [waves](super::waves) are told from the mean.
+//!
 //! A value stands for some time. Where a block ends within, both get their share.
 
 use serde::{Deserialize, Serialize};
+
+use super::waves::{WaveFit, WaveSums, Waves};
 
 /// Blocks at which neighbours are joined.
 pub(super) const MOST: usize = 24;
@@ -27,6 +32,12 @@ pub(crate) struct Blocks {
     open: Block,
     /// Number of blocks closed, those included that were joined since, at the present length.
     closed: u64,
+    /// Blocks in which all that is known repeats; 1 where they have been joined.
+    together: usize,
+    /// Blocks at which neighbours are joined.
+    most: usize,
+    /// Periods of what does not repeat in a block \[s\].
+    forcings: Vec<f64>,
     /// Origin of the sums: the first value. Squares of small differences keep their digits.
     origin: Option<f64>,
     grid: Grid,
@@ -38,6 +49,7 @@ pub(super) struct Block {
     pub(super) time: f64,
     sum: f64,
     squares: f64,
+    waves: WaveSums,
     /// Time in every bin of the grid.
     bins: Vec<f32>,
 }
@@ -59,10 +71,17 @@ pub(super) struct Moments {
 }
 
 impl Blocks {
-    /// Empty statistics for samples at an interval \[s\]; `period` \[s\] of the slowest forcing, infinite where nothing repeats.
-    pub(crate) fn new(every: f64, period: f64) -> Self {
+    /// Empty statistics for samples at an interval \[s\]; `period` \[s\] of the slowest forcing, infinite where nothing repeats, and the number of
+    /// them in which everything repeats together; the periods of `forcings` \[s\] whose waves are to be told from the mean.
+    pub(crate) fn new(every: f64, period: f64, together: usize, forcings: &[f64]) -> Self {
         let periods = (SAMPLES * every / period).ceil().max(1.0);
+        // Blocks of several periods are of all that repeats in them.
+        let together = if periods > 1.0 { 1 } else { together.max(1) };
         Self {
+            together,
+            // Of an even number of blocks pairs can be made, time and again.
+            most: together * MOST.div_ceil(together).max(LEAST).next_multiple_of(2),
+            forcings: forcings.to_vec(),
             every,
             length: periods * period,
             full: Vec::new(),
@@ -73,8 +92,8 @@ impl Blocks {
         }
     }
 
-    /// Takes in a value that stands for a time \[s\], counted from the first.
-    pub(crate) fn push(&mut self, [mut from, to]: [f64; 2], value: f64) {
+    /// Takes in a value that stands for a time \[s\], counted from the first, with cosine and sine of every forcing then.
+    pub(crate) fn push(&mut self, [mut from, to]: [f64; 2], value: f64, harmonics: &[f64]) {
         let origin = *self.origin.get_or_insert(value);
         let value = value - origin;
         while let Some(joined) = self.grid.without_room(value) {
@@ -85,43 +104,59 @@ impl Blocks {
         loop {
             let edge = (self.closed + 1) as f64 * self.length;
             let until = to.min(edge);
-            self.open.push(&self.grid, value, (until - from).max(0.0));
+            let time = (until - from).max(0.0);
+            self.open.push(&self.grid, value, time);
+            self.open.waves.push(value, time, harmonics);
             if to < edge {
                 return;
             }
             from = edge;
             self.full.push(std::mem::take(&mut self.open));
             self.closed += 1;
-            if self.full.len() == MOST {
+            if self.full.len() == self.most {
                 self.join();
             }
         }
     }
 
-    /// Joins neighbours.
+    /// Joins neighbours: those that repeat together, and then pairs.
     fn join(&mut self) {
-        let pairs = self.full.chunks_exact(2);
-        self.full = pairs.map(|pair| pair[0].with(&pair[1])).collect();
-        self.length *= 2.0;
-        self.closed /= 2;
+        let count = if self.together > 1 { self.together } else { 2 };
+        self.full = self.full.chunks_exact(count).map(sum).collect();
+        self.length *= count as f64;
+        self.closed /= count as u64;
+        self.together = 1;
     }
 
-    /// Blocks of whole periods that have samples; too few of them where most of the time has none.
-    pub(super) fn whole(&self) -> Vec<&Block> {
-        let full = self.full.iter();
-        full.filter(|block| block.time > 0.5 * self.length)
-            .collect()
+    /// Blocks of whole periods that have samples, where that is possible of all that repeats; too few of them where most of the time has none. With
+    /// their length \[s\].
+    pub(super) fn whole(&self) -> (Vec<Block>, f64) {
+        let count = if self.full.len() >= LEAST * self.together {
+            self.together
+        } else {
+            1
+        };
+        let length = count as f64 * self.length;
+        let joined = self.full.chunks_exact(count).map(sum);
+        let held = joined.filter(|block| block.time > 0.5 * length);
+        (held.collect(), length)
     }
 
     /// Statistics of whole periods where there are some, else of all samples; none without one.
     pub(super) fn statistics(&self) -> Option<Moments> {
-        let whole = self.whole();
+        let (whole, _) = self.whole();
         if whole.len() >= LEAST {
-            return self.moments(&sum(&whole));
+            let all = sum(&whole);
+            return self.moments(&all, &self.told(&all));
         }
-        let mut all: Vec<&Block> = self.full.iter().collect();
-        all.push(&self.open);
-        self.moments(&sum(&all))
+        let mut all = self.full.clone();
+        all.push(self.open.clone());
+        self.moments(&sum(&all), &WaveFit::none())
+    }
+
+    /// Which waves some blocks tell from their mean.
+    pub(super) fn told(&self, block: &Block) -> WaveFit {
+        WaveFit::of(&block.waves, block.time, &self.forcings)
     }
 
     /// Their mean; NaN without a sample.
@@ -134,20 +169,20 @@ impl Blocks {
         self.grid.quantile(block, 1.0) - self.grid.quantile(block, 0.0)
     }
 
-    /// Length of a block \[s\].
-    pub(super) fn length(&self) -> f64 {
-        self.length
-    }
-
-    /// Statistics of a block, or a sum of some; none without a sample.
-    pub(super) fn moments(&self, block: &Block) -> Option<Moments> {
+    /// Statistics of a block, or a sum of some, with these waves told from the mean; none without a sample.
+    ///
+    /// ```text
+    /// x = μ + Σ aₖ hₖ + r,   σ² = ⟨r²⟩ + ½ Σ aₖ²     hₖ: cosines and sines of the forcings
+    /// ```
+    pub(super) fn moments(&self, block: &Block, told: &WaveFit) -> Option<Moments> {
         let origin = self.origin?;
         if block.time <= 0.0 {
             return None;
         }
         let mean = block.sum / block.time;
-        // σ² = ⟨x²⟩ − x̄²
-        let variance = block.squares / block.time - mean * mean;
+        let waves = block.waves(told);
+        // ⟨x²⟩ − x̄² with what the waves have in whole periods, instead of what they have here.
+        let variance = block.squares / block.time - mean * mean - waves.explained + waves.power;
         let share = self.every / block.time;
         let at = |share: f64| self.grid.quantile(block, share);
         let grain = |p: f64| {
@@ -156,7 +191,7 @@ impl Blocks {
         };
         Some(Moments {
             values: [
-                origin + mean,
+                origin + mean - waves.shift,
                 variance.max(0.0).sqrt(),
                 origin + at(0.01),
                 origin + at(0.99),
@@ -167,7 +202,7 @@ impl Blocks {
 }
 
 /// All blocks as one.
-pub(super) fn sum(blocks: &[&Block]) -> Block {
+pub(super) fn sum(blocks: &[Block]) -> Block {
     let none = Block::default();
     blocks.iter().fold(none, |sum, block| sum.with(block))
 }
@@ -187,6 +222,16 @@ impl Block {
 
     fn with(&self, other: &Self) -> Self {
         self.combined(other, 1.0)
+    }
+
+    /// Waves that are told from its mean.
+    pub(super) fn waves(&self, told: &WaveFit) -> Waves {
+        told.fit(&self.waves, self.time, self.sum / self.time)
+    }
+
+    /// Mean without some waves, from the origin of the sums on.
+    pub(super) fn mean_without(&self, waves: &Waves) -> f64 {
+        self.sum / self.time - self.waves.mean_of(&waves.amplitudes, self.time)
     }
 
     /// A sum of blocks without one of them.
@@ -209,6 +254,7 @@ impl Block {
             time: self.time + sign * other.time,
             sum: self.sum + sign * other.sum,
             squares: self.squares + sign * other.squares,
+            waves: self.waves.combined(&other.waves, sign),
             bins,
         }
     }
@@ -310,10 +356,14 @@ mod tests {
 
     fn wave(periods: f64, samples: u32) -> Blocks {
         let every = periods / f64::from(samples);
-        let mut blocks = Blocks::new(every, 1.0);
+        let mut blocks = Blocks::new(every, 1.0, 1, &[]);
         for i in 0..=samples {
             let time = f64::from(i) * every;
-            blocks.push(around(time, every), 100.0 + 10.0 * (TAU * time + 0.4).sin());
+            blocks.push(
+                around(time, every),
+                100.0 + 10.0 * (TAU * time + 0.4).sin(),
+                &[],
+            );
         }
         blocks
     }
@@ -351,9 +401,9 @@ mod tests {
             vec![1e-200, 2e-200, 3.0],
             vec![7.0; 9],
         ] {
-            let mut blocks = Blocks::new(1.0, f64::INFINITY);
+            let mut blocks = Blocks::new(1.0, f64::INFINITY, 1, &[]);
             for (i, value) in values.iter().enumerate() {
-                blocks.push(around(i as f64, 1.0), *value);
+                blocks.push(around(i as f64, 1.0), *value, &[]);
             }
             let [mean, _, p1, p99] = blocks.statistics().unwrap().values;
             let least = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -369,6 +419,6 @@ mod tests {
 
     #[test]
     fn nothing_is_said_of_nothing() {
-        assert!(Blocks::new(1.0, 2.0).statistics().is_none());
+        assert!(Blocks::new(1.0, 2.0, 1, &[]).statistics().is_none());
     }
 }

@@ -52,6 +52,11 @@ impl ChainDuties {
         }
     }
 
+    /// Number of chains.
+    pub(super) fn chains(&self) -> usize {
+        self.chains.len()
+    }
+
     /// Takes in how many links of every chain are pressed.
     pub(super) fn push(&mut self, pressed: &[f64]) {
         for (chain, pressed) in self.chains.iter_mut().zip(pressed) {

@@ -28,6 +28,7 @@
 //! The motion is not steady where mean or standard deviation drift, by more than chance and by more than counts.
 
 use super::blocks::{Block, Blocks, LEAST, sum};
+use super::waves::WaveFit;
 
 /// Times the 95 % interval of a drift that is taken for chance: 1 of 300 steady runs drifts by more.
 const BY_CHANCE: f64 = 1.5;
@@ -71,11 +72,22 @@ pub struct Steadiness {
     pub is_steady: bool,
 }
 
+impl Steadiness {
+    /// With what may be left of the start in the mean and in quantiles.
+    #[must_use]
+    pub(super) fn and_start(mut self, left: f64) -> Self {
+        for known in [&mut self.mean, &mut self.p1, &mut self.p99] {
+            known.half_width = known.half_width.hypot(left);
+        }
+        self
+    }
+}
+
 impl Blocks {
     /// Statistics with their intervals; `scale`: of errors and drifts. None without a sample.
     pub(crate) fn steadiness(&self, scale: f64) -> Option<Steadiness> {
         let found = self.statistics()?;
-        let whole = self.whole();
+        let (whole, length) = self.whole();
         if whole.len() < LEAST {
             let known = |k: usize| ConfidenceInterval {
                 value: found.values[k],
@@ -92,11 +104,13 @@ impl Blocks {
             });
         }
         let all = sum(&whole);
-        let means: Vec<f64> = whole.iter().map(|it| self.values(it)[0]).collect();
-        let cut = truncation(&means);
-        let settled = self.values(&sum(&whole[cut..]))[0];
+        let told = self.told(&all);
+        let waves = all.waves(&told);
+        let means = whole.iter().map(|it| it.mean_without(&waves));
+        let cut = truncation(&means.collect::<Vec<_>>());
+        let settled = self.values(&sum(&whole[cut..]), &told)[0];
         let range = self.range(&all);
-        let spreads = [0, 1, 2, 3].map(|k| self.spread(&whole, &all, found.values, k));
+        let spreads = [0, 1, 2, 3].map(|k| self.spread(&whole, &all, &told, found.values, k));
         let steady = |it: &Spread| it.drift.abs() <= it.doubt.max(DRIFT * scale);
         let is_steady = spreads[..2].iter().all(steady);
         let known = |k: usize| {
@@ -127,21 +141,29 @@ impl Blocks {
             p1: known(2),
             p99: known(3),
             settled,
-            from: cut as f64 * self.length(),
+            from: cut as f64 * length,
             is_steady,
         })
     }
 
-    fn values(&self, block: &Block) -> [f64; 4] {
-        self.moments(block).map_or([f64::NAN; 4], |it| it.values)
+    fn values(&self, block: &Block, told: &WaveFit) -> [f64; 4] {
+        let found = self.moments(block, told);
+        found.map_or([f64::NAN; 4], |it| it.values)
     }
 
     /// Scatter of one statistic between blocks.
-    fn spread(&self, whole: &[&Block], all: &Block, values: [f64; 4], k: usize) -> Spread {
+    fn spread(
+        &self,
+        whole: &[Block],
+        all: &Block,
+        told: &WaveFit,
+        values: [f64; 4],
+        k: usize,
+    ) -> Spread {
         let g = whole.len() as f64;
         // yᵢ = g θ − (g − 1) θ₍ᵢ₎
         let without =
-            |block: &&Block| g * values[k] - (g - 1.0) * self.values(&all.without(block))[k];
+            |block: &Block| g * values[k] - (g - 1.0) * self.values(&all.without(block), told)[k];
         let pseudo: Vec<f64> = whole.iter().map(without).collect();
         let [least, most] = CORRELATION;
         let least = if whole.len() >= MANY { least } else { 0.0 };
@@ -261,220 +283,4 @@ fn students(freedom: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::f64::consts::{PI, TAU};
-
-    use super::*;
-
-    /// Numbers that look normal and are the same every time.
-    struct Noise(u64);
-
-    impl Noise {
-        fn uniform(&mut self) -> f64 {
-            // xorshift64* (Vigna 2016)
-            self.0 ^= self.0 >> 12;
-            self.0 ^= self.0 << 25;
-            self.0 ^= self.0 >> 27;
-            (self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
-        }
-
-        /// Sum of twelve: variance 1.
-        fn normal(&mut self) -> f64 {
-            (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
-        }
-    }
-
-    /// x ← φ x + e, which has the mean 0, in the steady state from the first one on.
-    fn series(seed: u64, phi: f64, count: usize) -> impl Iterator<Item = f64> {
-        let mut noise = Noise(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
-        let mut x = noise.normal() / (1.0 - phi * phi).sqrt();
-        (0..count).map(move |_| {
-            x = phi * x + noise.normal();
-            x
-        })
-    }
-
-    /// Of values that are one apart; what repeats has a period of so many.
-    fn of(values: impl Iterator<Item = f64>, period: f64, scale: f64) -> Steadiness {
-        let mut blocks = Blocks::new(1.0, period);
-        values.enumerate().for_each(|(i, value)| {
-            let i = i as f64;
-            blocks.push([(i - 0.5).max(0.0), i + 0.5], value);
-        });
-        blocks.steadiness(scale).unwrap()
-    }
-
-    const STATISTICS: [fn(&Steadiness) -> ConfidenceInterval; 4] =
-        [|it| it.mean, |it| it.deviation, |it| it.p1, |it| it.p99];
-
-    /// Shares of the intervals that hold what is true, their median half widths, and the 95 % quantiles of the true errors.
-    fn judged(true_values: [f64; 4], found: impl Iterator<Item = Steadiness>) -> [[f64; 3]; 4] {
-        let found: Vec<Steadiness> = found.collect();
-        std::array::from_fn(|k| {
-            let known: Vec<ConfidenceInterval> = found.iter().map(STATISTICS[k]).collect();
-            let mut errors: Vec<f64> = known
-                .iter()
-                .map(|it| (it.value - true_values[k]).abs())
-                .collect();
-            let held = known
-                .iter()
-                .zip(&errors)
-                .filter(|(it, error)| **error <= it.half_width);
-            let share = held.count() as f64 / known.len() as f64;
-            let mut widths: Vec<f64> = known.iter().map(|it| it.half_width).collect();
-            widths.sort_by(f64::total_cmp);
-            errors.sort_by(f64::total_cmp);
-            [
-                share,
-                widths[widths.len() / 2],
-                errors[errors.len() * 95 / 100],
-            ]
-        })
-    }
-
-    /// Noise of any correlation: intervals hold the true statistics as often as they say, and are no wider than they need be. The 2.326 σ of a
-    /// normal distribution are its quantiles. Intervals ten times as wide, or a third, fail.
-    #[test]
-    fn intervals_hold_as_often_as_they_say() {
-        for (phi, count) in [(0.0_f64, 600), (0.5, 1500), (0.9, 5000), (0.98, 25_000)] {
-            let sigma = 1.0 / (1.0 - phi * phi).sqrt();
-            let quantile = 2.326_348 * sigma;
-            let true_values = [0.0, sigma, -quantile, quantile];
-            let seeds = 1..=(1_500_000 / count as u64).min(300);
-            let found = judged(
-                true_values,
-                seeds.map(|seed| of(series(seed, phi, count), 25.0, 1e-9)),
-            );
-            for (k, [share, width, error]) in found.into_iter().enumerate() {
-                // Of noise they hold more than of drives, whose drifts they are made for; that they are not too wide, the ratio tells.
-                assert!(share > 0.88, "φ {phi}, {k}: {share}");
-                let ratio = width / error;
-                assert!((0.6..2.0).contains(&ratio), "φ {phi}, {k}: {ratio}");
-            }
-        }
-    }
-
-    /// A motion that repeats, with the teeth upon it, begun anywhere and ended anywhere: statistics are those of whole periods, and intervals no
-    /// wider than a few times what is true, however few periods there are.
-    #[test]
-    fn what_repeats_is_known_from_three_periods_on() {
-        for (periods, widest) in [(3.4, 3.0), (7.77, 3.0), (38.2, 1.5), (120.6, 1.5)] {
-            let period = 61.7;
-            let wave = |i: usize, phase: f64| {
-                let turn = TAU * i as f64 / period + phase;
-                20.0 + 5.0 * turn.sin() + 2.0 * (7.0 * turn).cos()
-            };
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "a count"
-            )]
-            let count = (periods * period) as usize;
-            // σ² = ½ Σ A²
-            let sigma = f64::sqrt(0.5 * (25.0 + 4.0));
-            let of_phase = |phase: f64| of((0..count).map(|i| wave(i, phase)), period, 20.0);
-            let phases = || (0..100_u32).map(f64::from);
-            let means = phases()
-                .map(of_phase)
-                .map(|it| (it.mean.value - 20.0).abs());
-            let worst = means.fold(0.0, f64::max);
-            // The mean of all samples errs by up to A/(π m).
-            assert!(worst < 0.02 * 5.0 / (PI * periods), "{periods}: {worst}");
-            let found = judged([20.0, sigma, f64::NAN, f64::NAN], phases().map(of_phase));
-            for ([share, width, error], least) in found.into_iter().zip(LEAST_WIDTH).take(2) {
-                assert!(share >= 0.88, "{periods} periods: {share}");
-                let least = least * 20.0;
-                assert!(width < widest * error.max(least), "{width}, {error}");
-            }
-        }
-    }
-
-    #[test]
-    fn fewer_than_three_periods_say_nothing() {
-        let found = of(series(3, 0.5, 299), 100.0, 1.0);
-        assert!(STATISTICS.iter().all(|it| it(&found).half_width.is_nan()));
-        assert!(found.mean.value.is_finite() && found.p99.value > found.mean.value);
-        let found = of(series(3, 0.5, 301), 100.0, 1.0);
-        assert!(STATISTICS.iter().all(|it| it(&found).half_width > 0.0));
-    }
-
-    /// One of three periods dips: whether 1 % of the time lies in such dips or none does, three periods do not tell, and the interval of p1 is not said to
-    /// be wider than all samples. Twenty periods tell. What hardly changes is known by the least width, which is wider than its samples lie apart.
-    #[test]
-    fn an_interval_is_unknown_where_it_would_be_wider_than_all_samples() {
-        let dips = |i: usize, every: usize, by: f64| {
-            let wave = (TAU * i as f64 / 100.0).sin();
-            100.0 + wave
-                - if i / 100 % every == 1 && i % 100 > 90 {
-                    by
-                } else {
-                    0.0
-                }
-        };
-        let short = of((0..301).map(|i| dips(i, 3, 20.0)), 100.0, 100.0);
-        assert!(short.p1.half_width.is_nan(), "{short:?}");
-        assert!(
-            short.mean.half_width > 0.0 && short.p99.half_width < 22.0,
-            "{short:?}"
-        );
-        let long = of((0..2101).map(|i| dips(i, 3, 20.0)), 100.0, 100.0);
-        assert!(long.p1.half_width < 22.0, "{long:?}");
-        let nearly = of(
-            (0..301).map(|i| dips(i, 3, 0.0) * 1e-3 + 99.9),
-            100.0,
-            100.0,
-        );
-        assert!((nearly.p1.half_width - 0.5).abs() < 1e-3, "{nearly:?}");
-    }
-
-    /// A drift that counts is told, one that nobody would read is not, however sure it is.
-    #[test]
-    fn drifts_that_count_are_told() {
-        let settling = |size: f64| {
-            let drift =
-                move |(i, x): (usize, f64)| 100.0 + 0.01 * x + size * (-(i as f64) / 3000.0).exp();
-            of(series(5, 0.5, 4000).enumerate().map(drift), 50.0, 100.0)
-        };
-        assert!(settling(0.0).is_steady && settling(1.0).is_steady);
-        assert!(!settling(20.0).is_steady);
-        let growing =
-            (0..4000).map(|i| (1.0 + f64::from(i) / 4000.0) * (TAU * f64::from(i) / 50.0).sin());
-        assert!(!of(growing, 50.0, 1.0).is_steady, "its deviation grows");
-    }
-
-    /// A start that dies away is cut off, and what it does to the mean is in the interval.
-    #[test]
-    fn the_start_is_cut_off() {
-        let start = |i: usize| 30.0 * (-(i as f64) / 150.0).exp();
-        let noise = series(11, 0.5, 6000).enumerate();
-        let found = of(noise.map(|(i, x)| 100.0 + x + start(i)), 50.0, 100.0);
-        assert!(found.from > 200.0 && found.from < 3000.0, "{found:?}");
-        assert!((found.settled - 100.0).abs() < 0.2, "{found:?}");
-        assert!((found.mean.value - 100.0).abs() < found.mean.half_width);
-    }
-
-    #[test]
-    fn a_constant_is_known() {
-        let found = of(std::iter::repeat_n(5.0, 1000), 10.0, 0.0);
-        assert!(found.is_steady && found.mean.half_width.abs() < 1e-9);
-        assert!((found.mean.value - 5.0).abs() < 1e-12 && found.deviation.value < 1e-9);
-    }
-
-    /// Published: Abramowitz and Stegun, *Handbook of Mathematical Functions*, table 26.10.
-    #[test]
-    fn students_t_is_that_of_the_tables() {
-        for (freedom, t) in [
-            (2.0, 4.303),
-            (3.0, 3.182),
-            (5.0, 2.571),
-            (10.0, 2.228),
-            (30.0, 2.042),
-        ] {
-            assert!(
-                (students(freedom) - t).abs() < 2e-3,
-                "{freedom}: {}",
-                students(freedom)
-            );
-        }
-    }
-}
+mod tests;

@@ -150,7 +150,9 @@ impl Contacts {
         slots: &mut Slots<'_, S>,
         sums: &mut Sums<S>,
     ) -> Option<Lane<S>> {
-        let RollerSlot { lane, roller, .. } = slot;
+        let RollerSlot {
+            lane, axis, roller, ..
+        } = slot;
         let law = &self.law;
         let gap = near.select(faced.gap, w.splat(FAR));
         // δ̇ = −n·u
@@ -217,6 +219,14 @@ impl Contacts {
         sums.fy = sums.fy - fy;
         sums.moment += moment;
         sums.damping = sums.damping.max(damping);
+        // Of a circle that touches several sides: with its forces on those before.
+        let mut together = force;
+        let mut other = axis;
+        while other < lane {
+            together += slots.memory.force(w, other);
+            other += slots.lanes();
+        }
+        sums.greatest = sums.greatest.max(together);
         // What implicit steps and other elements of the chain ask of every contact.
         if let Some(faces) = &mut slots.faces {
             let [stiffness, damping] = law.slopes::<S, LONG>(w, &pressed, share);

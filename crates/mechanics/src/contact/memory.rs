@@ -129,25 +129,6 @@ impl ContactMemory {
         (0..self.len()).map(move |contact| self.get(what, contact))
     }
 
-    /// Greatest force of one circle \[N\]: those on all sides of its slot add up, which stand `slots` after each other.
-    pub(crate) fn greatest_force(&self, slots: usize) -> f64 {
-        let side = blocks(slots);
-        let mut greatest = [0.0_f64; LANES];
-        for first in (0..side).step_by(BLOCK) {
-            let mut forces = [0.0; LANES];
-            for place in (first..self.numbers.len()).step_by(side) {
-                let at = place + MemoryField::Force as usize * LANES;
-                for (force, own) in forces.iter_mut().zip(&self.numbers[at..at + LANES]) {
-                    *force += own;
-                }
-            }
-            for (greatest, force) in greatest.iter_mut().zip(forces) {
-                *greatest = if force > *greatest { force } else { *greatest };
-            }
-        }
-        greatest.into_iter().fold(0.0, f64::max)
-    }
-
     /// Takes over one contact of another memory.
     pub(crate) fn carry(&mut self, to: usize, other: &Self, from: usize) {
         let [to, from] = [to, from].map(|contact| place(MemoryField::InverseOnset, contact));
@@ -311,6 +292,12 @@ impl<'a, S: Simd> MemoryLanes<'a, S> {
     #[inline(always)]
     pub(crate) fn keep_force(&mut self, lane: usize, force: Lane<S>) {
         self.keep(MemoryField::Force, lane, force);
+    }
+
+    /// Forces of a lane that has been written \[N\], zero where open.
+    #[inline(always)]
+    pub(super) fn force(&self, w: Wide<S>, lane: usize) -> Lane<S> {
+        self.now.get(w, Self::place(MemoryField::Force, lane))
     }
 
     #[inline(always)]

@@ -19,6 +19,8 @@ pub(crate) struct Wrench {
     pub(crate) friction_loss: f64,
     /// Deepest penetration \[m\].
     pub(crate) depth: f64,
+    /// Greatest normal force of one circle, on all its sides together \[N\].
+    pub(crate) greatest: f64,
     /// Largest damping of one contact, along the normal and across \[N s/m\].
     pub(crate) damping: f64,
     /// Largest damping across alone \[N s/m\].
@@ -150,6 +152,8 @@ pub(super) struct Sums<S: Simd> {
     pub(super) moment: Lane<S>,
     pub(super) damping: Lane<S>,
     pub(super) across: Lane<S>,
+    /// Greatest normal force of one circle \[N\].
+    pub(super) greatest: Lane<S>,
     pub(super) tally: LaneTally<S>,
 }
 
@@ -163,6 +167,7 @@ impl<S: Simd> Sums<S> {
             moment: zero,
             damping: zero,
             across: zero,
+            greatest: zero,
             tally: LaneTally::new(w),
         }
     }
@@ -174,6 +179,7 @@ impl<S: Simd> Sums<S> {
             moment: self.moment.sum(),
             damping: self.damping.largest(),
             across: if rubbing { self.across.largest() } else { 0.0 },
+            greatest: self.greatest.largest(),
             ..Wrench::default()
         };
         self.tally.total(rubbing, wrench)

@@ -6,6 +6,7 @@ use chaindrive_integrate::{Moment, SecondOrderSystem};
 use super::{Record, System};
 use crate::accounts::{AccountSizes, Accounts};
 use crate::energy::Flow;
+use crate::order::Forcing;
 use crate::watch::{DriveExtremes, Watch, WatchPlan, WatchWork, mean_between, range_of};
 
 impl System {
@@ -63,7 +64,7 @@ impl System {
     }
 
     /// Hands out the readings of the spans since the last call: each a time \[s\], the tension of every span \[N\], not a number where no roller holds
-    /// it, and how many links of every chain are pressed.
+    /// it, how many links of every chain are pressed, and the phase of every [forcing](WatchPlan::forcings) \[rad\].
     pub fn hand_out_readings(&mut self, to: &mut Vec<f64>) {
         if let Some(watch) = &mut self.watch {
             watch.hand_out_readings(to);
@@ -112,16 +113,13 @@ impl Watch {
             extremes.lag.see(lag, t);
         }
         for (member, record) in system.chains.iter().zip(&record.chains) {
-            let loads = &record.loads;
-            let found = loads.teeth.iter().zip(&loads.wheel_wrenches);
-            for (on, (touch, wrench)) in member.contacts.teeth.iter().zip(found) {
-                // Where nothing is indented nothing presses.
-                let greatest = if wrench.depth > 0.0 {
-                    touch.state.greatest_force(on.contacts.slots)
-                } else {
-                    0.0
-                };
-                sprockets[on.wheel].contact.see(greatest, t);
+            let found = member
+                .contacts
+                .teeth
+                .iter()
+                .zip(&record.loads.wheel_wrenches);
+            for (on, wrench) in found {
+                sprockets[on.wheel].contact.see(wrench.greatest, t);
             }
         }
         for (extremes, wrench) in self.current.guides.iter_mut().zip(&record.rail_wrenches) {
@@ -142,6 +140,10 @@ impl Watch {
         if reads {
             let count = self.current.spans.len() + self.current.chains.len();
             self.readings.resize(readings + count, f64::NAN);
+            let turning = &self.work.turning;
+            let turned = |it: &Forcing| it.shaft.map_or(t, |shaft| turning[shaft].position);
+            let phases = self.plan.forcings.iter().map(|it| it.rate * turned(it));
+            self.readings.extend(phases);
         }
         let read = &mut self.readings[readings..];
         for (member, record) in system.chains.iter().zip(&record.chains) {

@@ -24,8 +24,8 @@ const CRATES: [Storeys; 6] = [
                 "kinematics",
                 "lanes",
             ],
-            &["engagement", "watch"],
-            &["course", "order", "shaft_loss"],
+            &["engagement", "order"],
+            &["course", "shaft_loss", "watch"],
             &[
                 "articulation",
                 "coupling",
