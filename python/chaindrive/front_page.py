@@ -12,7 +12,7 @@ import xarray as xr
 
 from chaindrive.analysis.parts import chains, sprockets
 from chaindrive.page import Page, table
-from chaindrive.plot.units import rounded
+from chaindrive.plot.units import in_trade
 
 __all__ = ["front_page"]
 
@@ -102,11 +102,11 @@ def _load_case(run: xr.Dataset) -> Iterator[str]:
                 yield f"{body['name']}: {use} {'; '.join(_acting(it, 'N m') for it in torques)}."
     pretension = scene.get("route", {}).get("pretension")
     if pretension:
-        yield f"Pretension {rounded(float(pretension), 'N')}."
+        yield f"Pretension {_told(float(pretension), 'N')}."
     for tensioner in scene.get("tensioners", ()):
         push = tensioner.get("push", {})
         preload = push.get("preload")
-        by = f", preload {rounded(float(preload), 'N')}" if preload is not None else ""
+        by = f", preload {_told(float(preload), 'N')}" if preload is not None else ""
         kind = tensioner.get("carrier", {}).get("kind", "carrier")
         yield f"Tensioner {tensioner['name']}: {kind}, {push.get('kind', 'no push')}{by}."
 
@@ -114,16 +114,22 @@ def _load_case(run: xr.Dataset) -> Iterator[str]:
 def _acting(it: Mapping[str, Any], unit: str) -> str:
     """Return a motion or a torque in words; ``unit`` is that of its amplitudes."""
     words = [str(it.get("kind", ""))]
-    words += [f"{key} {rounded(float(it[key]), of)}" for key, of in _UNITS.items() if key in it]
+    words += [f"{key} {_told(float(it[key]), of)}" for key, of in _UNITS.items() if key in it]
     terms = [it] if "order" in it else it.get("terms", ())
     for term in terms:
         at = f"order {term['order']:g}" if "order" in term else f"{term.get('frequency', 0):g} Hz"
-        words.append(f"{at} with {rounded(float(term['amplitude']), unit)}")
+        words.append(f"{at} with {_told(float(term['amplitude']), unit)}")
     if "torques" in it:
         values = np.asarray(it["torques"], dtype=float)
-        low, high = rounded(float(values.min()), unit), rounded(float(values.max()), unit)
+        low, high = _told(float(values.min()), unit), _told(float(values.max()), unit)
         words.append(f"from {low} to {high}")
     return ", ".join(words)
+
+
+def _told(value: float, unit: str) -> str:
+    """Return a value [SI] with six digits, as a scene has it, in a unit of the trade."""
+    factor, name = in_trade(unit, value)
+    return f"{factor * value:.6g} {name}"
 
 
 def _verdict(told: Mapping[str, Any]) -> str:
