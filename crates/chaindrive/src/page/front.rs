@@ -108,7 +108,7 @@ impl PageContent<'_> {
 
     fn irregularity_to_sign(&self) -> Option<[String; 3]> {
         let sprockets = self.bodies.sprockets.iter();
-        let known = sprockets.filter_map(|it| Some((irregularity(it)?, it)));
+        let known = sprockets.filter_map(|it| Some((it.irregularity()?, it)));
         let (irregularity, worst) = known.max_by(|a, b| a.0.total_cmp(&b.0))?;
         Some([
             "speed irregularity".to_owned(),
@@ -116,17 +116,6 @@ impl PageContent<'_> {
             format!("of {}, greatest less least over the mean", worst.name),
         ])
     }
-}
-
-/// Greatest less least speed of a sprocket over the mean \[–\]; none of what stands, or swings to and fro: that has no mean speed to speak of.
-///
-/// ```text
-/// δ = (ω_max − ω_min)/ω̄
-/// ```
-pub(super) fn irregularity(of: &SprocketStatistics) -> Option<f64> {
-    let swings = of.speeds.least < 0.0 && of.speeds.greatest > 0.0;
-    let irregularity = of.speeds.range() / of.speed.abs();
-    (irregularity.is_finite() && !swings).then_some(irregularity)
 }
 
 /// Bounds of a check; why it could not be judged.

@@ -2,7 +2,7 @@
 
 use super::Section;
 use super::sections::PageContent;
-use crate::chain_verdict::{Check, CheckOutcome, Limit};
+use crate::chain_verdict::{CheckOutcome, Limit};
 use crate::verdict::Trust;
 
 impl PageContent<'_> {
@@ -14,12 +14,16 @@ impl PageContent<'_> {
         for check in checks {
             let step = match check.outcome {
                 CheckOutcome::Fail | CheckOutcome::Warning => against(check.limit).to_owned(),
-                CheckOutcome::NotJudged => missing(check),
+                CheckOutcome::NotJudged => wanted(check.limit),
                 CheckOutcome::Pass => String::new(),
             };
-            // Limits that ask for the same are one sentence.
-            if !step.is_empty() && !sentences.contains(&step) {
-                sentences.push(step);
+            // The rating of another chain is no more than a hint.
+            let rating = (check.limit == Limit::TwinPower).then(|| wanted(Limit::RatedPower));
+            for step in [Some(step), rating].into_iter().flatten() {
+                // Limits that ask for the same are one sentence.
+                if !step.is_empty() && !sentences.contains(&step) {
+                    sentences.push(step);
+                }
             }
         }
         if self.verdict.trust != Trust::Trusted {
@@ -54,14 +58,14 @@ fn against(limit: Limit) -> &'static str {
 }
 
 /// Input without which a limit is not judged; empty where nobody could give one.
-fn missing(check: &Check) -> String {
-    let wanted = match check.limit {
+fn wanted(limit: Limit) -> String {
+    let input = match limit {
         Limit::StaticSafety | Limit::DynamicSafety => "chain.breaking_load, of its standard,",
         Limit::BearingPressure => "chain.bearing_area, pin diameter times bush length,",
         Limit::RatedPower => "chain.rated_power, as its maker says,",
         _ => return String::new(),
     };
-    format!("Give {wanted} to have the {} judged.", subject(check.limit))
+    format!("Give {input} to have the {} judged.", subject(limit))
 }
 
 fn subject(limit: Limit) -> &'static str {

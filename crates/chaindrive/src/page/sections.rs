@@ -1,6 +1,5 @@
 //! The sections of the page.
 
-use super::front::irregularity;
 use super::{Section, error_by_step};
 use std::f64::consts::TAU;
 
@@ -386,7 +385,7 @@ impl PageContent<'_> {
             "sprocket\tspeed, greatest less least [%]\ttransmission error, peak to peak [deg]";
         let mut section = Section::new("speed irregularity and transmission error", columns);
         for (index, it) in self.bodies.sprockets.iter().enumerate() {
-            let Some(irregularity) = irregularity(it) else {
+            let Some(irregularity) = it.irregularity() else {
                 continue;
             };
             let lag = if it.leader() == index {
