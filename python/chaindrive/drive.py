@@ -348,7 +348,7 @@ class Drive:
         Raises
         ------
         ParameterError
-            No rating is known for the chain, as there is no source for those of the B series; the
+            The chain is not rated, as there is no source for those of the B series; the
             number of teeth is not positive or the speed not finite; or there are several chains
             and none is named.
         KeyError

@@ -16,15 +16,23 @@ class Page:
     """The page of a run, in the order of a design review and the units of the trade.
 
     Verdict, what the drive does, tensions, bearings and guides, impacts, tensioners,
-    irregularity, losses, utilisation, inputs that were assumed. `print` shows it as text, a
+    irregularity, losses, utilisation, assumed inputs, what next. `print` shows it as text, a
     notebook as tables.
     """
 
-    def __init__(self, text: str, sections: list[dict[str, Any]], numerics: str) -> None:
+    def __init__(
+        self,
+        text: str,
+        sections: list[dict[str, Any]],
+        numerics: str,
+        front: dict[str, Any] | None = None,
+    ) -> None:
         self.text = text
         """The page as text."""
         self.sections = sections
         """Its sections: ``title``, ``columns``, ``rows`` and ``sentences``, all of them text."""
+        self.front = front or {}
+        """Six numbers that are signed, a section for the first page of a report."""
         self.numerics = numerics
         """Steps, contacts, energy and errors of the run, as text."""
 
@@ -65,8 +73,10 @@ def page_of(run: xr.Dataset) -> Page:
             "this dataset has no page of a run: "
             "the run has not ended, or a version before 0.3 made it; simulate it again"
         )
-    sections = json.loads(str(attributes["page"]))["sections"]
-    return Page(str(attributes["summary"]), sections, str(attributes["numerics"]))
+    page = json.loads(str(attributes["page"]))
+    # A result of 0.3.0 has no first page.
+    front = page.get("front")
+    return Page(str(attributes["summary"]), page["sections"], str(attributes["numerics"]), front)
 
 
 def section(told: dict[str, Any], level: int = 4) -> str:

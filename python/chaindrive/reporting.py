@@ -18,6 +18,7 @@ import xarray as xr
 from chaindrive.drive import Drive, load
 from chaindrive.errors import ChaindriveError
 from chaindrive.extras import extra
+from chaindrive.front_page import front_page
 from chaindrive.page import page_of, section, table
 from chaindrive.replaying import replay
 from chaindrive.simulation import simulate
@@ -39,7 +40,8 @@ def report(
 ) -> str:
     """Make the report of a run: one HTML file that needs nothing else, and prints well.
 
-    Layout, page of the run, diagrams, inputs with their sources, replay, scene, build. What the
+    The first page is what is signed: drive, load case, both verdicts, six numbers, limits; after it
+    layout, page of the run, diagrams, inputs with their sources, replay, scene, build. What the
     run did not record, or the drive has not, is said in its place.
 
     Parameters
@@ -89,6 +91,7 @@ def _document(run: xr.Dataset) -> str:
     verdict, *sections = told.sections
     parts = [
         f"<h1>{html.escape(title)}</h1>",
+        front_page(run, told),
         section(verdict, level=2),
         _picture("The drive at the start", lambda ax: _layout(run, ax)),
         *(section(it, level=2) for it in sections),

@@ -269,3 +269,36 @@ def test_what_is_missing_is_named(two_sprockets: xr.Dataset) -> None:
         analysis.running_modes(cd.scenes.bicycle(), speeds=1.0)
     with pytest.raises(cd.ParameterError, match="does not turn at 90"):
         two_sprockets.drive.span_frequencies(speed=90.0)
+
+
+def test_orders_are_named(two_sprockets: xr.Dataset) -> None:
+    """Mesh, loop of 112 links, turns, and what acts in turns: by the teeth, on either shaft."""
+    names = analysis.order_names(two_sprockets, "crank")
+    known = {60.0: "mesh, 60 teeth of crank", 120.0: "2 × mesh", 1.5: "turn of camshaft"}
+    assert known.items() <= names.items()
+    assert names[60 / 112] == "chain loop"
+    assert analysis.order_names(two_sprockets, "camshaft")[40.0] == "mesh, 40 teeth of camshaft"
+    run = cd.simulate(cd.scenes.timing_drive(), until=1e-3, run_in=0, error=False)
+    told = analysis.order_names(run, "crank")[2.0]
+    assert told == "motion of crank, order 2; torque on exhaust, order 4; torque on intake, order 4"
+    assert "torque on exhaust, order 4" in analysis.order_names(run, "exhaust")[4.0]
+
+
+def test_lines_of_an_order_spectrum_have_their_names(two_sprockets: xr.Dataset) -> None:
+    from matplotlib import pyplot
+
+    tension = two_sprockets["span_tension"].sel(span="crank-camshaft")
+    spread = analysis.order_spectrum(two_sprockets, tension, "crank")
+    ax = cd.plot.spectrum(spread, up_to=130.0)
+    written = {text.xy[0]: text.get_text() for text in ax.texts}
+    assert "60 mesh, 60 teeth of crank" in written[60.0]
+    assert "2 × mesh" in written[120.0]
+    pyplot.close(ax.figure)
+    # Lines beyond the axis have none.
+    ax = cd.plot.spectrum(spread, up_to=70.0)
+    assert not any("2 × mesh" in text.get_text() for text in ax.texts)
+    pyplot.close(ax.figure)
+    cut = analysis.order_slice(analysis.order_map(two_sprockets, tension, "crank", turns=0.5), 60)
+    ax = cd.plot.order_slice(cut)
+    assert ax.lines[0].get_label() == "order 60, mesh, 60 teeth of crank"
+    pyplot.close(ax.figure)

@@ -428,7 +428,7 @@ def test_the_rating_of_a_b_series_is_that_of_its_maker(industrial):
     """The formula of ISO 10823 could not be read: nothing is rated unless the scene says so."""
     silent = industrial.drive.rating()
     assert silent["power_rated"].isnull()
-    assert silent.attrs["power_unrated"] == "no rating: source missing"
+    assert silent.attrs["power_unrated"] == "not rated: source missing"
     given = {"chain.rated_power": "20 kW", "chain.service_factor": 1.4, "chain.strands": 2}
     drive = cd.scenes.industrial_16b().replace(given)
     assert drive.rated_power(19, 31.4) == pytest.approx(20e3)
@@ -443,7 +443,7 @@ def test_the_rating_of_a_b_series_is_that_of_its_maker(industrial):
 
 
 def test_ratings_that_nobody_knows_are_refused():
-    with pytest.raises(cd.ParameterError, match="no rating: source missing"):
+    with pytest.raises(cd.ParameterError, match="not rated: source missing"):
         cd.scenes.industrial_16b().rated_power(19, 31.4)
     american = cd.scenes.industrial_16b().replace({"chain.type": "16A-1"})
     with pytest.raises(cd.ParameterError, match="teeth = 0"):

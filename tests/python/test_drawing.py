@@ -389,3 +389,39 @@ def test_notebooks_show_drives():
     (data,) = re.findall(r'src="data:image/svg\+xml;base64,([^"]+)"', drive._repr_html_())
     assert base64.b64decode(data).decode() == drive._repr_svg_()
     assert 'id="roller-primary-0"' in drive._repr_svg_()
+
+
+def rotation(svg, name):
+    """Sense of the arrow of a sprocket about its centre: +1 counter-clockwise, 0 without one."""
+    found = re.search(rf'<path id="rotation-{name}" class="rotation" d="([^"]+)"/>', svg)
+    if found is None:
+        return 0
+    numbers = [[float(it) for it in re.findall(r"-?[\d.]+", part)] for part in found[1].split("M")]
+    arc, (*_, tip_x, tip_y, _, _) = numbers[1], numbers[2]
+    start, end = np.array(arc[:2]), np.array(arc[-2:])
+    # The head stands at the end of the arc.
+    assert (tip_x, tip_y) == tuple(end)
+    line = re.search(rf'id="sprocket-{name}-spoke" x1="([^"]+)" y1="([^"]+)"', svg)
+    centre = np.array([float(line[1]), float(line[2])])
+    a, b = start - centre, end - centre
+    assert np.hypot(*a) == pytest.approx(np.hypot(*b), abs=2e-4)
+    return int(np.sign(a[0] * b[1] - a[1] * b[0]))
+
+
+def test_arrows_show_which_way_sprockets_turn():
+    """By the mean speed: the reversed speed reverses them, and what stands still has none."""
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    names = ("driver", "driven")
+    for sense in (1, -1):
+        drive = cd.scenes.industrial_16b().replace({"sprockets.driver.motion.speed": 30.0 * sense})
+        assert [rotation(drive.svg(), name) for name in names] == [sense, sense]
+        # As it is laid, before anything passes speeds on.
+        assert [rotation(drive.svg(settled=False), name) for name in names] == [sense, 0]
+        ax = cd.plot.layout(drive)
+        arrows = [line.get_xydata() for line in ax.lines if line.get_label() == "_rotation"]
+        # An arc and a head for each; below the centre the arc goes to the right.
+        assert [np.sign(it[-1, 0] - it[0, 0]) for it in arrows[::2]] == [sense, sense]
+        assert len(arrows) == 4
+        pyplot.close(ax.figure)
+    still = cd.scenes.industrial_16b().replace({"sprockets.driver.motion": {"kind": "held"}})
+    assert [rotation(still.svg(), name) for name in names] == [0, 0]

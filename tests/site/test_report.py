@@ -9,6 +9,7 @@ import chaindrive as cd
 
 #: Sections in their order; those of the page of a run stand between the first two.
 ORDER = [
+    "Six numbers",
     "Verdict",
     "Diagrams",
     "Inputs and their sources",
@@ -88,11 +89,15 @@ def test_a_report_prints(visit, report, tmp_path):
     pages = PdfReader(paper).pages
     sheets = [sheet.extract_text() for sheet in pages]
     assert 5 <= len(sheets) <= 30
-    assert "Verdict:" in sheets[0]
+    # What is signed fits one sheet, and the rest begins on the next one.
+    assert "Verdicts" in sheets[0]
+    assert "signature" in sheets[0]
+    assert "Verdict:" not in sheets[0]
+    assert "Verdict:" in sheets[1]
     # A sheet with a few words and no picture is a page break at the wrong place.
     full = [
         len(sheet.split()) > 15 or len(page.images) > 0
         for sheet, page in zip(sheets, pages, strict=True)
     ]
     assert all(full[:-1])
-    assert any("Nobody measured" in sheet for sheet in sheets)
+    assert any("Assumed:" in sheet for sheet in sheets)

@@ -114,9 +114,9 @@ macro_rules! limits {
 }
 
 limits! {
-    StaticSafety, "static-safety", "static safety factor: breaking load over the greatest link tension", "", AtLeast, warn &[7.0], fail Some(3.0), "7: iwis, Bruchkraft; 3: the proof load that chains of ISO 606 have borne before they are sold";
+    StaticSafety, "static-safety", "static safety factor: breaking load over the maximum link tension", "", AtLeast, warn &[7.0], fail Some(3.0), "7: iwis, Bruchkraft; 3: the proof load that chains of ISO 606 have borne before they are sold";
     DynamicSafety, "dynamic-safety", "dynamic safety factor: breaking load over the mean pull of the tightest span", "", AtLeast, warn &[7.0], fail Some(5.0), "endurance is 15 to 20 % of the breaking load: iwis, Dauerfestigkeit; Renold takes 8";
-    BearingPressure, "bearing-pressure", "pressure of pins on bushes under the mean pull of the tightest span", "N/mm²", AtMost, warn &[30.0], fail Some(60.0), "assumed: what makers publish at moderate speeds, and twice that";
+    BearingPressure, "bearing-pressure", "bearing pressure of pins on bushes under the mean pull of the tightest span", "N/mm²", AtMost, warn &[30.0], fail Some(60.0), "assumed: what makers publish at moderate speeds, and twice that";
     RatedPower, "rated-power", "power carried times service factor over the rated power", "%", AtMost, warn &[100.0], fail Some(100.0), "the rating of the chain, see docs/rating.md";
     TwinPower, "twin-power", "power carried times service factor over the rated power of the ASME B29.1 chain of its pitch", "%", AtMost, warn &[100.0], fail None, "ASME B29.1 rates another chain: its twin";
     Speed, "speed", "chain speed over the greatest of its type", "%", AtMost, warn &[100.0], fail Some(100.0), "none could be read in a public source";

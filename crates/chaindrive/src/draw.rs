@@ -11,10 +11,11 @@ mod view;
 
 use std::fmt::Write;
 
+use chaindrive_geometry::{Piece, Vector};
 use chaindrive_mechanics::{Body, BodyKind, Figure, FigureChain, Placement, Pose};
 
 pub use path::escaped;
-use path::{id, millimetres, outline, placed, polygon};
+use path::{id, millimetres, outline, placed, polygon, polyline};
 use view::View;
 
 /// Looks of all parts, for drawings alone: pages that hold one have other pictures too. Lines keep their width whatever the size.
@@ -30,6 +31,7 @@ const STYLE: &str = "\
 .chaindrive .pivot{fill:#7d8a52;stroke:#7d8a52}
 .chaindrive .roller{fill:#8d99a6;fill-opacity:.2}
 .chaindrive .plate{fill:#2f7ec2;fill-opacity:.45;stroke-width:.4}
+.chaindrive .rotation{stroke:#767e87;stroke-width:1.4}
 .chaindrive .mark{stroke:#d6324a;stroke-width:2}
 .chaindrive text{font-family:sans-serif;fill:#767e87}
 .chaindrive .told{fill:#d6324a}";
@@ -46,8 +48,11 @@ pub fn svg(figure: &Figure, pose: &Pose, title: &str) -> String {
         |kind: &BodyKind| matches!(kind, BodyKind::Sprocket { .. }),
     ];
     for within in layers {
-        for (body, placement) in bodies().filter(|(body, _)| within(&body.kind)) {
-            self::body(&mut out, body, placement);
+        for (index, (body, placement)) in bodies().enumerate() {
+            if within(&body.kind) {
+                self::body(&mut out, body, placement);
+                rotation(&mut out, figure, index, placement);
+            }
         }
     }
     for (index, chain) in figure.chains.iter().enumerate() {
@@ -104,6 +109,21 @@ fn body(out: &mut String, body: &Body, placement: &Placement) {
         }
         BodyKind::Guide { .. } | BodyKind::Carrier { .. } | BodyKind::Plunger => {}
     }
+}
+
+/// The arrow that shows which way a sprocket turns.
+fn rotation(out: &mut String, figure: &Figure, index: usize, placement: &Placement) {
+    let Some(arrow) = figure.rotation_arrow(index) else {
+        return;
+    };
+    let to = Vector::new(placement.x, placement.y);
+    let shaft = outline(&[Piece::Arc(arrow.arc).translated(to)], false);
+    let head = polyline(&arrow.head.map(|p| p + to));
+    let id = id(&["rotation", &figure.bodies[index].name]);
+    line(
+        out,
+        format_args!("<path id=\"{id}\" class=\"rotation\" d=\"{shaft}{head}\"/>"),
+    );
 }
 
 fn chain(out: &mut String, chain: &FigureChain, index: usize, pose: &Pose) {

@@ -112,7 +112,7 @@ impl Measure {
             Self::Impulse => &[("N s", 1.0), ("mN s", 1e-3)],
             Self::Speed => &[("m/s", 1.0)],
             Self::Energy => &[("MJ", 1e6), ("kJ", 1e3), ("J", 1.0), ("mJ", 1e-3)],
-            Self::Pressure => &[("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3), ("Pa", 1.0)],
+            Self::Pressure => &[("GPa", 1e9), ("N/mm²", 1e6), ("kPa", 1e3), ("Pa", 1.0)],
             Self::Time => &[("s", 1.0), ("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)],
         }
     }

@@ -56,7 +56,8 @@ pub use chaindrive_integrate::{InstructionSet, Method, Statistics};
 pub use chaindrive_mechanics::{
     Accounts, Assembled, Body, BodyKind, Clash, ContactEvent, ContactPair, Course, Drive,
     DriveExtremes, Energy, EventKinds, Extremes, Figure, FigureChain, Flow, Impact, Instant,
-    MissingChannel, Mode, Modes, Observation, Placement, PlateShape, Pose, Source, Store,
+    MissingChannel, Mode, Modes, Observation, Placement, PlateShape, Pose, RotationArrow, Source,
+    Store,
 };
 pub use channel::{Axis, Channel};
 pub use describe::Description;

@@ -1,14 +1,16 @@
 //! The page of a run: what a chain engineer asks of it, in the order of a design review and the units of the trade.
 //!
 //! ```text
-//! verdict · what the drive does · tensions · bearings and guides · impacts · tensioners · irregularity · losses · utilisation · inputs
+//! verdict · what the drive does · tensions · bearings and guides · impacts · tensioners · irregularity · losses · utilisation · inputs · what next
 //! ```
 //!
 //! A [`Page`] is sections of sentences and tables, as text, or as JSON for whoever sets them otherwise. Steps, contacts and errors are
 //! [numerics], on a page of their own.
 
 mod error_by_step;
+mod front;
 mod losses;
+mod next_steps;
 mod numerics;
 mod sections;
 
@@ -28,6 +30,8 @@ use crate::{RunInReport, Simulation, Verdict};
 pub struct Page {
     /// Its sections, in order.
     pub sections: Vec<Section>,
+    /// Numbers that are signed, for the first page of a report: not part of the text.
+    pub front: Section,
 }
 
 /// A part of a page.
@@ -80,7 +84,8 @@ impl Page {
         };
         let mut sections = run.sections();
         sections.retain(|section| !section.is_empty());
-        Self { sections }
+        let front = run.front();
+        Self { sections, front }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Capacity of a chain beside its duty in a run: rated power, safety against breaking, bearing pressure, loads of the shafts.
+//! Capacity of a chain beside its duty in a run: rated power, safety factors, bearing pressure, shaft loads.
 //!
 //! Nothing of this moves the drive. Power is rated where a formula could be read in a public source, that for the chains of ASME B29.1
 //! (see [`PowerLimits`](chaindrive_mechanics::PowerLimits)), or where the scene gives what the maker says; else a [`Rating`] tells why not.
@@ -35,12 +35,12 @@ pub struct Rating {
     pub twin: Option<f64>,
     /// How it is to be oiled, where that is known for its pitch.
     pub lubrication: Option<Lubrication>,
-    /// Breaking load over the greatest tension of a link \[–\]. Seven is usual in the selection of chains (*assumed*).
+    /// Static safety factor: breaking load over the maximum link tension \[–\]. Seven is usual in the selection of chains (*assumed*).
     pub static_safety: Option<f64>,
-    /// Breaking load over the greatest mean tension of a span, which recurs once a circuit \[–\]. From eight on the plates do not tire
+    /// Dynamic safety factor: breaking load over the greatest mean tension of a span, which recurs once a circuit \[–\]. From eight on the plates do not tire
     /// (Renold, *Transmission Chain Designer Guide*).
     pub dynamic_safety: Option<f64>,
-    /// Pressure of pins on bushes under the greatest mean tension of a span \[Pa\], all strands sharing it.
+    /// Bearing pressure of pins on bushes under the greatest mean tension of a span \[Pa\], all strands sharing it.
     pub bearing_pressure: Option<f64>,
     /// What the chain does to each shaft, sprocket by sprocket.
     pub shaft_loads: Vec<ShaftLoad>,

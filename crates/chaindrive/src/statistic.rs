@@ -82,14 +82,14 @@ statistics! {
     ContactForceP90, "contact_force_p90", "N", Run(|_, it| it.forces().p90), "90th percentile of the forces of loaded rollers on teeth";
     ContactForceP99, "contact_force_p99", "N", Run(|_, it| it.forces().p99), "99th percentile of the forces of loaded rollers on teeth";
     ContactForceMax, "contact_force_max", "N", Run(|_, it| it.greatest_contact()), "greatest force of a roller on teeth over all steps";
-    LinkTensionMax, "link_tension_max", "N", Run(|_, it| it.link_tension().greatest), "greatest tension of a link over all steps";
+    LinkTensionMax, "link_tension_max", "N", Run(|_, it| it.link_tension().greatest), "maximum link tension, over all steps";
     LinkTensionMaxTime, "link_tension_max_time", "s", Run(|_, it| it.link_tension().greatest_at), "time at which a link had it";
-    LinkTensionMin, "link_tension_min", "N", Run(|_, it| it.link_tension().least), "least tension of a link over all steps; negative where it was pressed";
+    LinkTensionMin, "link_tension_min", "N", Run(|_, it| it.link_tension().least), "least link tension, over all steps; negative where a link was pressed";
     SprocketSpeedMean, "sprocket_speed_mean", "rad/s", Body(|it| it.speed), "mean speed of the sprocket: angle over time, of whole periods of the slowest forcing";
     SprocketTorqueMean, "sprocket_torque_mean", "N m", Body(|it| it.torque), "mean torque of the chain on the sprocket: impulse over time";
     SprocketPowerMean, "sprocket_power_mean", "W", Body(|it| it.power), "mean power of the chain on the sprocket: work over time";
-    BearingForceMean, "bearing_force_mean", "N", Body(|it| it.force.mean_polar()[0]), "magnitude of the mean force of the chain on the sprocket";
-    BearingForceMax, "bearing_force_max", "N", Body(|it| it.force.extremes.greatest), "greatest force of the chain on the sprocket over all steps";
+    BearingForceMean, "bearing_force_mean", "N", Body(|it| it.force.mean_polar()[0]), "mean shaft load: magnitude of the mean force of the chain on the sprocket";
+    BearingForceMax, "bearing_force_max", "N", Body(|it| it.force.extremes.greatest), "greatest shaft load: force of the chain on the sprocket, over all steps";
     BearingForceMaxTime, "bearing_force_max_time", "s", Body(|it| it.force.extremes.greatest_at), "time at which the sprocket had it";
     SpeedIrregularity, "speed_irregularity", "1", Body(|it| it.speeds.range() / it.speed.abs()), "greatest less least speed of the sprocket over all steps, over the mean";
     TransmissionErrorRange, "transmission_error_range", "rad", Body(|it| it.lag.range()), "greatest less least transmission error of the sprocket over all steps";

@@ -177,6 +177,7 @@ pub use observe::{ChainSize, Sights};
 pub use order::{Forcing, Order};
 pub use pose::{
     Body, BodyKind, Figure, FigureChain, Instant, MissingChannel, Placement, PlateShape, Pose,
+    RotationArrow,
 };
 pub use seam::{ContactEvent, ContactPair, EventKinds, Observation};
 pub use shaft_loss::{Bearing, BearingFeed, Series, ShaftDrag, ShaftLoss, SkfBearing};

@@ -10,12 +10,14 @@ mod carried_bodies;
 mod chains;
 mod places;
 mod plate;
+mod rotation;
 
 use chaindrive_geometry::{ArcSpline, Point};
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 
 pub use chains::{FigureChain, PlateShape};
 pub use places::{Instant, MissingChannel};
+pub use rotation::RotationArrow;
 
 use crate::body_positions::BodyPositions;
 use crate::check::clash::clashes;
@@ -35,6 +37,9 @@ pub struct Figure {
     pub gaps: Vec<Gap>,
     /// Why the drive cannot run as it stands, if it cannot.
     pub problem: Option<String>,
+    /// Mean speed of every sprocket \[rad/s\], counter-clockwise positive, or that at the start where no motion drives it. As a chain is laid, before the
+    /// drive is assembled, those that a motion turns are known, and others are zero.
+    pub speeds: Vec<f64>,
     /// The drive as it was laid: centres and tensioners where the chains close.
     parts: Parts,
     /// Angle of one gap axis of every sprocket as laid \[rad\].
@@ -159,6 +164,7 @@ impl Assembled {
         let wheels = self.system.bodies.wheels.iter();
         let gap_angles = wheels.map(|wheel| wheel.angle).collect();
         let mut figure = Figure::new(&self.parts, gap_angles, start)?;
+        figure.speeds = self.mean_speeds();
         figure.clashes.clone_from(&self.warnings);
         Ok(figure)
     }
@@ -187,6 +193,7 @@ impl Drive {
         let found = clashes(parts, &BodyPositions::laid(&laid), &rollers);
         let start = Start { seen, rollers };
         let mut figure = Figure::new(parts, laid.gap_angles.clone(), start)?;
+        figure.speeds = rotation::given_speeds(parts, laid.begin);
         for (chain, places) in figure.chains.iter_mut().zip(&figure.start.rollers) {
             // What does not close is a strand.
             chain.closed &= places.len() == chain.rollers;
@@ -224,6 +231,7 @@ impl Figure {
             clashes: Vec::new(),
             gaps: Vec::new(),
             problem: None,
+            speeds: Vec::new(),
             parts: parts.clone(),
             gap_angles,
             start,

@@ -68,9 +68,9 @@ pub enum MissingRating {
 impl fmt::Display for MissingRating {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::NoType => "no rating: the chain has no type of the catalogue",
-            Self::OtherPitch => "no rating: the pitch is not that of its type",
-            Self::SourceMissing { .. } => "no rating: source missing",
+            Self::NoType => "not rated: the chain has no type of the catalogue",
+            Self::OtherPitch => "not rated: the pitch is not that of its type",
+            Self::SourceMissing { .. } => "not rated: source missing",
         })
     }
 }

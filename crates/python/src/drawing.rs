@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use chaindrive::{BodyKind, Figure as CoreFigure, Instant, Placement, Pose, draw};
-use chaindrive_geometry::{Point, Vector};
+use chaindrive_geometry::{Piece, Point, Vector};
 use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyKeyError;
@@ -15,6 +15,9 @@ use crate::errors::OrRaise;
 /// How far chords of plates may stand off, in pitches.
 const COARSE: f64 = 1e-3;
 
+/// Chords of the arc of an arrow.
+const ARROW: u32 = 24;
+
 /// What stays the same while a drive moves: bodies with their outlines, chains with their measures.
 #[pyclass(frozen, module = "chaindrive._core")]
 #[derive(Debug)]
@@ -22,10 +25,10 @@ pub(crate) struct Figure(pub(crate) CoreFigure);
 
 #[pymethods]
 impl Figure {
-    /// The bodies: name, kind, measures, and outlines (points, 2) in their own frames whose chords stand off by `tolerance`.
+    /// The bodies: name, kind, measures, the arrow of a sprocket that turns (its arc and its head), and outlines (points, 2) in their own frames whose chords stand off by `tolerance`.
     fn bodies<'py>(&self, py: Python<'py>, tolerance: f64) -> PyResult<Bound<'py, PyList>> {
         let bodies = PyList::empty(py);
-        for body in &self.0.bodies {
+        for (index, body) in self.0.bodies.iter().enumerate() {
             let drawn = PyDict::new(py);
             drawn.set_item("name", &body.name)?;
             drawn.set_item("kind", body.kind.name())?;
@@ -44,6 +47,14 @@ impl Figure {
                     drawn.set_item("teeth", teeth)?;
                     drawn.set_item("pitch_radius", pitch_radius)?;
                     drawn.set_item("tip_radius", tip_radius)?;
+                    // Of a sprocket that stands still there is none.
+                    let arrow = self.0.rotation_arrow(index).map(|arrow| {
+                        let along = (0..=ARROW).map(|k| f64::from(k) / f64::from(ARROW));
+                        let piece = Piece::Arc(arrow.arc);
+                        let arc: Vec<Point> = along.map(|it| piece.point(it)).collect();
+                        Ok::<_, PyErr>((points(py, &arc)?, points(py, &arrow.head)?))
+                    });
+                    drawn.set_item("arrow", arrow.transpose()?)?;
                 }
                 BodyKind::Guide { touches } => drawn.set_item("touches", touches.name())?,
                 BodyKind::Carrier { .. } | BodyKind::Plunger => {}

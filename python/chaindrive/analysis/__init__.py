@@ -18,6 +18,7 @@ from chaindrive.analysis.elongation import wear, worn
 from chaindrive.analysis.engagement import decay, tooth_load
 from chaindrive.analysis.fatigue import cycles, rainflow
 from chaindrive.analysis.joints import joint_work
+from chaindrive.analysis.order_names import order_names
 from chaindrive.analysis.orders import campbell, mesh_orders, order_map, order_slice, order_spectrum
 from chaindrive.analysis.ramps import run_up
 from chaindrive.analysis.running import (
@@ -42,6 +43,7 @@ __all__ = [
     "mesh_orders",
     "moving_string",
     "order_map",
+    "order_names",
     "order_slice",
     "order_spectrum",
     "peaks",

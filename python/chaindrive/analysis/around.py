@@ -90,7 +90,7 @@ def tension_around_loop(
     names = {
         "mean": "mean link tension",
         "min": "least link tension",
-        "max": "largest link tension",
+        "max": "maximum link tension",
         "std": "scatter of link tension",
     }
     variables: dict[str, object] = {

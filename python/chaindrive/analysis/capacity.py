@@ -17,9 +17,12 @@ _NUMBERS = {
     "power_rated": ("W", "rated power"),
     "strand_factor": ("1", "power over that of a single strand"),
     "service_factor": ("1", "service factor"),
-    "static_safety": ("1", "breaking load over greatest tension of a link"),
-    "dynamic_safety": ("1", "breaking load over greatest mean tension of a span"),
-    "bearing_pressure": ("Pa", "pressure of pins on bushes"),
+    "static_safety": ("1", "static safety factor: breaking load over maximum link tension"),
+    "dynamic_safety": (
+        "1",
+        "dynamic safety factor: breaking load over mean pull of the tightest span",
+    ),
+    "bearing_pressure": ("Pa", "bearing pressure of pins on bushes"),
 }
 _TEXTS = ("power_limited_by", "power_unrated", "lubrication")
 

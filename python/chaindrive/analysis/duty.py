@@ -18,7 +18,7 @@ from chaindrive.errors import ParameterError
 __all__ = ["BEARING_PRESSURE", "ENDURANCE_FACTOR", "SEATING_SPEED", "STATIC_FACTOR", "utilisation"]
 
 STATIC_FACTOR = 7.0
-"""Breaking load over largest tension [–]: assumed, 7 is usual in the selection of chains."""
+"""Static safety factor, breaking load over maximum link tension [–]: assumed, 7 is usual."""
 ENDURANCE_FACTOR = 8.0
 """Breaking load over the tension that recurs [–], below which plates do not tire."""
 BEARING_PRESSURE = 30e6
@@ -56,9 +56,9 @@ def utilisation(
     ========= ================================== ================================
     check     load                               limit
     ========= ================================== ================================
-    static    largest tension of a link          F_u / 7, assumed
-    endurance largest mean tension of a span     F_u / 8 (Renold)
-    pressure  mean bearing pressure of joints    30 MPa, assumed
+    static    maximum link tension               F_u / 7, assumed
+    endurance mean pull of the tightest span     F_u / 8 (Renold)
+    pressure  mean bearing pressure of joints    30 N/mm², assumed
     seating   largest p ω of a sprocket          4 m/s, assumed
     power     mean power times service factor    rating at the smallest sprocket
     ========= ================================== ================================

@@ -95,7 +95,7 @@ def joint_work(
         "load_work": (work, "J", "load times sliding"),
         "friction_work": (friction * work, "J", "friction work"),
         "pressure": (pressure, "Pa", "mean bearing pressure"),
-        "pressure_largest": (load.max(axis=0) / area, "Pa", "largest bearing pressure"),
+        "pressure_largest": (load.max(axis=0) / area, "Pa", "greatest bearing pressure"),
         "pressure_velocity": (work / (area * seconds), "W/m^2", "pressure times velocity"),
     }
     return xr.Dataset(

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from chaindrive.analysis.order_names import order_names
 from chaindrive.analysis.running import running_modes
 from chaindrive.analysis.signal import label, sample_rate, signal, turning
 from chaindrive.errors import ParameterError
@@ -56,7 +57,7 @@ def order_map(
     -------
     xarray.DataArray
         (turn, order), with the coordinates ``speed`` [rad/s] and ``time`` [s] at the middle of
-        each window.
+        each window. Attributes ``named_orders`` and ``order_names``: what `order_names` knows.
 
     Raises
     ------
@@ -100,6 +101,7 @@ def order_map(
             "shaft": shaft,
             "window": window,
             "resolution": density / size,
+            **_named(run, shaft),
         },
     )
 
@@ -260,7 +262,7 @@ def campbell(
             "speed": ("time", speed, {"units": "rad/s", "long_name": f"speed of {shaft}"}),
             "order": ("order", chosen, {"units": "1", "long_name": f"order of {shaft}"}),
         },
-        attrs={"shaft": shaft},
+        attrs={"shaft": shaft, **_named(run, shaft)},
     )
     if not modes:
         return found
@@ -269,6 +271,14 @@ def campbell(
     return found.assign(
         mode_frequency=running["frequency"].rename(speed="mode_speed"),
     )
+
+
+def _named(run: xr.Dataset, shaft: str) -> dict[str, Any]:
+    """Return the named orders as attributes, which survive a file; none without a scene."""
+    if "resolved_scene" not in run.attrs:
+        return {}
+    names = order_names(run, shaft)
+    return {"named_orders": list(names), "order_names": list(names.values())}
 
 
 def mesh_orders(run: xr.Dataset) -> dict[str, float]:

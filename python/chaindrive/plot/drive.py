@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from chaindrive.drive import Drive
 from chaindrive.plot.axes import colour_bar, drawing
 from chaindrive.plot.docstrings import completed
-from chaindrive.plot.scheme import CARRIER, GUIDE, MARK, OUTLINE, PLATES, STEEL
+from chaindrive.plot.scheme import CARRIER, GUIDE, INK, MARK, OUTLINE, PLATES, STEEL
 from chaindrive.plot.units import in_trade, written
 from chaindrive.pose import Pose, drive_of, figure_of, recorded_at
 
@@ -47,7 +47,8 @@ def layout(
 
     All outlines are those that the simulation touches, in their places. The material behind
     guides, the carriers of tensioners and the waists of plates have no shape in a scene; they
-    are drawn for the eye.
+    are drawn for the eye. Arrows show which way sprockets turn, by their mean speeds or those at
+    the start; what stands still has none.
 
     Parameters
     ----------
@@ -179,6 +180,9 @@ class _Picture:
             spoke = _placed(np.array([[0.0, 0.0], [0.0, 0.4 * body["pitch_radius"]]]), placement)
             self.ax.plot(*spoke.T, color=OUTLINE, linewidth=0.8, zorder=2.1)
             self.ax.plot(x, y, "o", color=OUTLINE, markersize=2.5, zorder=2.1)
+            for part in body["arrow"] or ():
+                upright = _placed(part, np.array([x, y, 0.0]))
+                self.ax.plot(*upright.T, color=INK, linewidth=1.4, zorder=2.2, label="_rotation")
         elif body["kind"] == "guide":
             backing = _placed(body["backing"], placement)
             face: dict[str, Any] = {"facecolor": GUIDE, "edgecolor": "none", "alpha": 0.45}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -42,6 +43,8 @@ __all__ = [
 _RPM = 60.0 / (2.0 * np.pi)
 # Amplitudes below this share of the largest are drawn in the darkest colour.
 _FLOOR_DB = -60.0
+# Share of an axis that an upright line of text takes.
+_LETTER = 0.022
 
 
 @completed()
@@ -54,6 +57,8 @@ def spectrum(
     **options: Any,
 ) -> Axes:
     """Draw a spectrum, its amplitude logarithmic; one line a label where there are several.
+
+    Lines of an order spectrum that are known from the scene have names.
 
     Parameters
     ----------
@@ -90,6 +95,8 @@ def spectrum(
         ax.set_xlabel(written(about.get("long_name", axis), about.get("units", "1")))
         ax.set_ylabel(written(spread.attrs.get("long_name", str(spread.name)), unit))
         ax.margins(x=0)
+        if axis == "order":
+            _name_lines(ax, spread.attrs, float(shown[axis][0]), float(shown[axis][-1]))
     return ax
 
 
@@ -165,7 +172,7 @@ def order_slice(
     cut = analysed(source, order_slice, "amplitude", {"order": order}, usual)
     with drawing(ax) as ax:
         about = cut["amplitude"].attrs
-        style: dict[str, Any] = {"label": f"order {about['order']:g}"} | look
+        style: dict[str, Any] = {"label": _named_order(about, about["order"])} | look
         factor, unit = in_trade(about.get("units", "1"), cut["amplitude"])
         ax.plot(_RPM * cut["speed"], factor * cut["amplitude"], **style)
         ax.set_xlabel(f"speed of {about['shaft']} [rpm]")
@@ -212,7 +219,7 @@ def campbell(
             last = int(np.flatnonzero(within)[np.argmax(speed[within])])
             high = line[last] > 0.5 * frequency[-1]
             ax.annotate(
-                f"{order:g}",
+                _named_order(found.attrs, order).removeprefix("order "),
                 (speed[last], line[last]),
                 xytext=(-2, -9 if high else 3),
                 textcoords="offset points",
@@ -382,6 +389,41 @@ def span_envelope(
 def _span_tension(run: xr.Dataset) -> str:
     tightest_span(run)
     return "span_tension"
+
+
+def _name_lines(ax: Axes, about: Mapping[str, Any], least: float, greatest: float) -> None:
+    """Name the orders of an axis that are known; those that stand too near share a text."""
+    known = zip(about.get("named_orders", ()), about.get("order_names", ()), strict=True)
+    groups: list[list[tuple[float, str]]] = []
+    for order, name in known:
+        if not least <= order <= greatest:
+            continue
+        if groups and order - groups[-1][0][0] < _LETTER * (greatest - least):
+            groups[-1].append((order, name))
+        else:
+            groups.append([(order, name)])
+    for group in groups:
+        for order, _ in group:
+            ax.axvline(order, color=LIMIT, linewidth=0.5, linestyle=":", zorder=0.5)
+        ax.annotate(
+            "; ".join(f"{order:.4g} {name}" for order, name in group),
+            (group[0][0], 1.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(1, -2),
+            textcoords="offset points",
+            rotation=90,
+            ha="left",
+            va="top",
+            fontsize=6,
+            color=LIMIT,
+        )
+
+
+def _named_order(about: Mapping[str, Any], order: float) -> str:
+    """Return an order in words, with its name where it has one."""
+    known = zip(about.get("named_orders", ()), about.get("order_names", ()), strict=True)
+    name = next((f", {name}" for it, name in known if np.isclose(it, order, rtol=1e-6)), "")
+    return f"order {order:g}{name}"
 
 
 # The signal and the shaft of orders, where nobody names them.

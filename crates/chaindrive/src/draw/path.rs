@@ -57,8 +57,13 @@ pub(super) fn outline(pieces: &[Piece], closed: bool) -> String {
 
 /// Path data of a closed polygon.
 pub(super) fn polygon(points: &[Point]) -> String {
+    format!("{}Z", polyline(points))
+}
+
+/// Path data of an open polygon.
+pub(super) fn polyline(points: &[Point]) -> String {
     let corners: Vec<String> = points.iter().map(|p| point(*p)).collect();
-    format!("M{}Z", corners.join("L"))
+    format!("M{}", corners.join("L"))
 }
 
 pub(super) fn point(p: Point) -> String {

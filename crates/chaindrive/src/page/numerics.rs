@@ -41,9 +41,9 @@ fn told(
     }
     let forces = summary.forces();
     let quantiles = [forces.p50, forces.p90, forces.p99, forces.max];
-    let [p50, p90, p99, max] = quantiles.map(figure);
+    let [median, p90, p99, greatest] = quantiles.map(figure);
     if forces.max > 0.0 {
-        lines! { f; "contact force [N]\tp50 {p50}  p90 {p90}  p99 {p99}  max {max}"; }
+        lines! { f; "contact force [N]\tmedian {median}  p90 {p90}  p99 {p99}  greatest {greatest}"; }
     }
     contacts(f, summary, simulation)?;
     touches(f, simulation)?;

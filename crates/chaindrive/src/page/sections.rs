@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use chaindrive_mechanics::Extremes;
 
-use crate::chain_verdict::{Check, CheckOutcome};
+use crate::chain_verdict::CheckOutcome;
 use crate::describe::left_out;
 use crate::figure::{Measure, Scale, duration, figure, percent};
 use crate::precision::Judgement;
@@ -59,6 +59,7 @@ impl PageContent<'_> {
             self.losses(),
             self.utilisation(),
             self.inputs(),
+            self.next_steps(),
         ]
     }
 
@@ -84,7 +85,9 @@ impl PageContent<'_> {
                 check.outcome.name().to_owned(),
             ]);
         }
-        let worst = chains.reasons().map(Check::to_string);
+        let worst = chains
+            .reasons()
+            .map(|it| format!("{it}. Limit: {}", it.limit.source()));
         let unjudged = chains
             .checks
             .iter()
@@ -280,9 +283,9 @@ impl PageContent<'_> {
         section
     }
 
-    /// Links against what breaks them.
+    /// Maximum link tension, against what breaks a link.
     fn links(&self) -> Section {
-        let mut section = Section::new("links", "");
+        let mut section = Section::new("maximum link tension", "");
         let loads = self.summary.carried().into_iter();
         let loads = loads.filter(|it| it.tension.greatest.is_finite());
         section.sentences.extend(loads.map(|it| strength(&it)));
@@ -301,7 +304,7 @@ impl PageContent<'_> {
         let unit = scale.unit;
         let greatest = format!("greatest [{unit}]\tat [s]\tof a period, median [{unit}]\t± 95 %");
         let columns = format!("on\tmean [{unit}]\tdirection from x [deg]\t{greatest}");
-        let mut section = Section::new("bearing and guide forces", &columns);
+        let mut section = Section::new("shaft loads and guide forces", &columns);
         for (name, force) in all {
             let [mean, direction] = force.mean_polar();
             let direction = if mean > 0.0 {
@@ -333,8 +336,8 @@ impl PageContent<'_> {
         let estimate = self.judgement.and_then(Judgement::estimate);
         let by_step = estimate.map_or("", |_| "\t± step [%]");
         let (unit, impulse) = (scale.unit, impulses.unit);
-        let half = format!("on\tnumber\thalf below [{unit}]{by_step}");
-        let most = format!("99 of 100 below [{unit}]\tgreatest [{unit}]{by_step}");
+        let half = format!("on\tnumber\tmedian [{unit}]{by_step}");
+        let most = format!("p99 [{unit}]\tgreatest [{unit}]{by_step}");
         let columns = format!("{half}\t{most}\timpulse [{impulse}]\tclosing [m/s]");
         let mut section = Section::new("impacts of rollers that seat", &columns);
         for it in struck {
@@ -382,13 +385,9 @@ impl PageContent<'_> {
             "sprocket\tspeed, greatest less least [%]\ttransmission error, peak to peak [deg]";
         let mut section = Section::new("speed irregularity and transmission error", columns);
         for (index, it) in self.bodies.sprockets.iter().enumerate() {
-            // δ = (ω_max − ω_min)/ω̄
-            let irregularity = it.speeds.range() / it.speed.abs();
-            // What swings to and fro has no mean speed to speak of.
-            let swings = it.speeds.least < 0.0 && it.speeds.greatest > 0.0;
-            if !irregularity.is_finite() || swings {
+            let Some(irregularity) = it.irregularity() else {
                 continue;
-            }
+            };
             let lag = if it.leader() == index {
                 "–".to_owned()
             } else {
@@ -410,7 +409,7 @@ impl PageContent<'_> {
     }
 
     fn inputs(&self) -> Section {
-        let mut section = Section::new("inputs that were assumed", "");
+        let mut section = Section::new("assumed inputs", "");
         let left_out = left_out(&self.simulation.assembled().drive);
         let left_out = (!left_out.is_empty())
             .then(|| format!("The model leaves out {}.", left_out.join(", ")));
@@ -431,7 +430,7 @@ impl PageContent<'_> {
             rest => format!(", and {rest} more"),
         };
         section.sentences = vec![
-            format!("Nobody measured {}{rest}.", named.join(", ")),
+            format!("Assumed: {}{rest}.", named.join(", ")),
             "`chaindrive resolve` lists all inputs with their sources.".to_owned(),
         ];
         section.sentences.extend(left_out);
@@ -440,7 +439,7 @@ impl PageContent<'_> {
 }
 
 /// Words before a text; nothing where it is empty.
-fn after(words: &str, text: &str) -> String {
+pub(super) fn after(words: &str, text: &str) -> String {
     if text.is_empty() {
         String::new()
     } else {
@@ -462,20 +461,26 @@ fn half_width(scale: &Scale, value: f64) -> String {
     }
 }
 
-/// The hardest pulled link of a chain, against what breaks it.
+/// Maximum link tension of a chain, and its static safety factor.
 fn strength(load: &Load) -> String {
     let of = after(" of ", &load.chain);
     let Extremes {
-        least, greatest, ..
+        least,
+        greatest,
+        greatest_at,
+        ..
     } = load.tension;
     let pull = Measure::Force.told(greatest);
     let breaks = match load.strength.breaking_load {
         Some(breaking) => format!(
-            "the chain breaks at {}, {} times that",
-            Measure::Force.told(breaking),
-            figure(breaking / greatest)
+            "Static safety factor: {}, against the breaking load of {}",
+            figure(breaking / greatest),
+            Measure::Force.told(breaking)
         ),
-        None => "no breaking load is known: give chain.breaking_load".to_owned(),
+        None => {
+            "Static safety factor: not judged, no breaking load is known: give chain.breaking_load"
+                .to_owned()
+        }
     };
     let pressed = if load.pressed > 0.0 && -least > ROUNDING * greatest {
         format!(
@@ -486,7 +491,8 @@ fn strength(load: &Load) -> String {
     } else {
         String::new()
     };
-    format!("The hardest pulled link{of}, wherever on the loop, bears {pull}; {breaks}.{pressed}")
+    let at = duration(greatest_at);
+    format!("Maximum link tension{of}, of any link: {pull} at {at}. {breaks}.{pressed}")
 }
 
 /// Power of a chain against its rating, or why there is none, and the lubrication that its speed asks for.
@@ -536,7 +542,7 @@ fn rated(rating: &Rating) -> Vec<String> {
     };
     let pressure = rating.bearing_pressure.map(|pressure| {
         format!(
-            "Pins press their bushes with {} under the mean pull of the tight side.",
+            "Bearing pressure of pins on bushes: {}, under the mean pull of the tightest span.",
             Measure::Pressure.told(pressure)
         )
     });

@@ -210,14 +210,14 @@ impl Estimate {
             "  {all}, average\tmean {}, rms {}", self.mean, self.rms;
             "  {all}, scatter\tstd {deviation}, p1 {low}, p99 {high} of the mean tension";
         }
-        let [p50, p90, p99] = &self.force;
-        if p50.difference.is_finite() {
-            lines! { sheet; "  contact force\tp50 {p50}, p90 {p90}, p99 {p99}"; }
+        let [median, p90, p99] = &self.force;
+        if median.difference.is_finite() {
+            lines! { sheet; "  contact force\tmedian {median}, p90 {p90}, p99 {p99}"; }
         }
         for it in &self.impacts {
-            let [p50, p99, impulse, speed] = it.columns().map(|(_, error)| percent(error));
+            let [median, p99, impulse, speed] = it.columns().map(|(_, error)| percent(error));
             lines! { sheet;
-                "  impacts on {}\tforce p50 {p50}, p99 {p99}, impulse {impulse}, closing speed {speed}; {} compared",
+                "  impacts on {}\tforce median {median}, p99 {p99}, impulse {impulse}, closing speed {speed}; {} compared",
                     it.sprocket, it.compared;
             }
         }

@@ -54,6 +54,17 @@ pub struct SprocketStatistics {
 }
 
 impl SprocketStatistics {
+    /// Greatest less least speed over the mean \[–\]; none of what stands, or swings to and fro: that has no mean speed to speak of.
+    ///
+    /// ```text
+    /// δ = (ω_max − ω_min)/ω̄
+    /// ```
+    pub fn irregularity(&self) -> Option<f64> {
+        let swings = self.speeds.least < 0.0 && self.speeds.greatest > 0.0;
+        let irregularity = self.speeds.range() / self.speed.abs();
+        (irregularity.is_finite() && !swings).then_some(irregularity)
+    }
+
     /// Means, as the rating of its chain asks for them.
     pub(super) fn duty(&self) -> SprocketDuty {
         SprocketDuty {

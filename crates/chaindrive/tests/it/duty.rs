@@ -70,7 +70,7 @@ fn a_link_that_bears_more_than_breaks_the_chain_is_distrusted() {
     let strength = known.drive().unwrap().chains[0].chain.strength;
     assert_eq!(strength.breaking_load, Some(850e3));
     // Of chains of the B series no formula for the power could be read.
-    let missing = "no rating: source missing";
+    let missing = "not rated: source missing";
     let rated = rated_power(&strength, 19, 31.4);
     assert_eq!(rated.unwrap_err().to_string(), missing);
 }

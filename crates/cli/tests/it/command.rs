@@ -393,7 +393,7 @@ fn the_marine_engine_runs() {
     assert_eq!(code, 0, "{err}");
     for word in [
         "span tension [kN]",
-        "The hardest pulled link",
+        "Maximum link tension, of any link",
         "crank-camshaft",
         "contact force [N]",
         "ns per link",

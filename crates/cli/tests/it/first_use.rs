@@ -287,7 +287,7 @@ fn the_rating_of_a_chain_is_told() {
     );
     // Of the B series no formula could be read.
     let (_, out, _) = run("", &["describe", "industrial_16b"]);
-    assert!(out.contains("no rating: source missing"), "{out}");
+    assert!(out.contains("not rated: source missing"), "{out}");
 }
 
 /// A drive that nobody takes energy from has no efficiency, and says where the energy goes.

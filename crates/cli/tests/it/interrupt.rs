@@ -31,7 +31,7 @@ fn interrupted_it_ends_the_result_and_the_summary() {
     assert!(
         String::from_utf8(output.stdout)
             .unwrap()
-            .contains("The hardest pulled link")
+            .contains("Maximum link tension, of any link")
     );
     assert_eq!(String::from_utf8(output.stderr).unwrap(), "interrupted\n");
     let about = attributes(&store);
