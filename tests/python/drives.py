@@ -125,7 +125,7 @@ def random_drive(seed: int) -> cd.Drive:
 
 
 def swinging_drive(seed: int) -> cd.Drive:
-    """Return a drawn drive whose driver and load swing by orders of their shafts, with a chain of the catalogue and default contacts."""
+    """Return a drawn drive whose driver and load swing by orders, with default contacts."""
     drive = random_drive(seed).to_dict()
     lot = random.Random(10_000 + seed)
     driver, driven = drive["sprockets"][:2]

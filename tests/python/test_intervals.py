@@ -116,10 +116,11 @@ def drawn(count: int) -> Iterator[tuple[int, cd.Drive, float]]:
 
 @pytest.mark.slow
 def test_intervals_of_drives_drawn_by_lot() -> None:
-    """Forty drives whose speed and load swing by orders that no record holds whole, one span of each, against ten disjoint records of the same drive.
+    """Forty drives that swing by orders which no record holds whole, against ten more records.
 
-    A right interval of 95 % fails in 34 of 40 or fewer with 0.3 %. Half widths are held against the scatter of the ten records, or the least that
-    is ever said. A drive that says that its means are uncertain has to be so.
+    One span of each. A right interval of 95 % holds in fewer than 34 of 40 with 0.3 %. Half widths
+    are held against the scatter of the ten disjoint records, or the least that is ever said. A
+    drive that says that its means are uncertain has to be so.
     """
     held: dict[str, int] = dict.fromkeys([*STATISTICS, "max"], 0)
     ratios: dict[str, list[float]] = {it: [] for it in STATISTICS}
@@ -170,7 +171,7 @@ def test_intervals_of_drives_drawn_by_lot() -> None:
 
 @pytest.mark.slow
 def test_a_tensioner_that_settles_slowly_is_in_the_interval() -> None:
-    """Records of 80 ms after run-ins that are too short for the oil of the tensioner, each by itself without a drift to be seen."""
+    """Records of 80 ms after run-ins too short for its oil, none with a drift to be seen."""
     drive = cd.scenes.timing_drive()
     run_ins = [f"{it} s" for it in (0.1, 0.2, 0.28, 0.36, 0.44, 1.5)]
     found = cd.sweep(drive, {"run.run_in": run_ins}, until="80 ms")

@@ -223,8 +223,11 @@ fn orders(curve: impl Fn(f64) -> f64) -> Vec<u32> {
         re.hypot(im)
     };
     let amplitudes: Vec<(u32, f64)> = (1..=MOST_ORDERS).map(|k| (k, amplitude(k))).collect();
-    let counts = COUNTS * amplitudes.iter().map(|it| it.1).fold(0.0, f64::max);
-    let counting = amplitudes.iter().filter(|it| it.1 > 0.0 && it.1 >= counts);
+    // What is rounding is no order.
+    let all: f64 = points.iter().map(|f| f.abs()).sum();
+    let greatest = amplitudes.iter().map(|it| it.1).fold(0.0, f64::max);
+    let counts = (COUNTS * greatest).max(1e-12 * all);
+    let counting = amplitudes.iter().filter(|it| it.1 > counts);
     let mut orders: Vec<u32> = counting.map(|it| it.0).collect();
     if orders.is_empty() {
         orders.push(1);
