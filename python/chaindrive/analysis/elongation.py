@@ -103,7 +103,7 @@ def wear(
     >>> run = cd.simulate(drive, until=0.1, every=2e-4, record=channels, error=False)
     >>> found = wear(run)
     >>> print(found["life"].values.astype(int), f"h to {100 * float(found['wear_limit'])} %")
-    [  7600 760000] h to 1.5 %
+    [  770 77000] h to 1.5 %
     """
     k, ends = _coefficient(coefficient, coefficient_range)
     which = one_chain(run, chain)

@@ -37,7 +37,7 @@ fn of_chain(rating: &Rating, chain: &Chain) -> Vec<Check> {
         known(
             Limit::BearingPressure,
             pressure,
-            "pin and bush are not known: give chain.bearing_area",
+            "pin and bush are not known: give chain.type, or chain.joint.length of clearance joints",
         ),
         worn(rating, chain, of),
     ];

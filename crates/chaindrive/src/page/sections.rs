@@ -554,11 +554,11 @@ fn rated(rating: &Rating) -> Vec<String> {
     let wear = rating.wear_limit.map(|limit| {
         let after = rating.life.map_or_else(String::new, |hours| {
             format!(
-                ": new, after {} as here; a tenth to ten times of a wear coefficient of 3·10⁻⁷ mm³/(N m), assumed",
+                " A new one grows by that in {} of running as here: the wear coefficient of 3·10⁻⁷ mm³/(N m) is assumed, within a factor of ten.",
                 told_hours(hours)
             )
         });
-        format!("Chain{of} is worn out at {limit}{after}.")
+        format!("Chain{of} is worn out at {limit}.{after}")
     });
     let sentences = std::iter::once(power).chain(pressure);
     sentences.chain(oil).chain(wear).collect()
