@@ -115,7 +115,7 @@ def utilisation(
         )
     made_for = rating(run, chain=chain)
     if made_for["greatest_tension"].isnull():
-        message = f"no greatest tension of {which.title}: the run has not ended, or nothing pulls"
+        message = f"nothing pulls at {which.title}, or the run has not ended: it has no tension"
         raise ParameterError(message, "run")
     pull = float(made_for["tight_pull"])
     wheels = [it for it in sprockets(run).values() if it.chain.name == which.name]
