@@ -7,12 +7,14 @@
 mod load;
 mod lubrication;
 mod strands;
+mod wear;
 
 use chaindrive_mechanics::{Capacity, MissingRating, Strength};
 
 pub use load::{Load, SprocketDuty};
-pub use lubrication::Lubrication;
+pub use lubrication::{Lubrication, LubricationSpeeds};
 pub use strands::strand_factor;
+pub use wear::{BAND, COEFFICIENT, WearBound, WearLimit, told_hours};
 
 /// Capacity of a chain beside its duty in a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,8 +35,16 @@ pub struct Rating {
     pub limits: Result<Vec<PowerLimit>, MissingRating>,
     /// Power that the chain of ASME B29.1 with its pitch and strands is rated for \[W\], where there is no rating of its own.
     pub twin: Option<f64>,
-    /// How it is to be oiled, where that is known for its pitch.
+    /// Its speed \[m/s\], at the sprocket at which it is rated.
+    pub chain_speed: f64,
+    /// How it is to be oiled, where it moves.
     pub lubrication: Option<Lubrication>,
+    /// Chain speeds up to which a class of lubrication does, for its pitch.
+    pub lubrication_speeds: Option<LubricationSpeeds>,
+    /// Maximum link tension over all steps \[N\].
+    pub greatest_tension: Option<f64>,
+    /// Greatest mean tension of a span \[N\]: the pull of the tight side.
+    pub tight_pull: Option<f64>,
     /// Static safety factor: breaking load over the maximum link tension \[–\]. Seven is usual in the selection of chains (*assumed*).
     pub static_safety: Option<f64>,
     /// Dynamic safety factor: breaking load over the greatest mean tension of a span, which recurs once a circuit \[–\]. From eight on the plates do not tire
@@ -42,6 +52,10 @@ pub struct Rating {
     pub dynamic_safety: Option<f64>,
     /// Bearing pressure of pins on bushes under the greatest mean tension of a span \[Pa\], all strands sharing it.
     pub bearing_pressure: Option<f64>,
+    /// Elongation at which it is worn out; none where it passes no sprocket.
+    pub wear_limit: Option<WearLimit>,
+    /// Hours until a new chain is worn out, by a wear coefficient from [`COEFFICIENT`] / [`BAND`] to [`COEFFICIENT`] · [`BAND`].
+    pub life: Option<[f64; 2]>,
     /// What the chain does to each shaft, sprocket by sprocket.
     pub shaft_loads: Vec<ShaftLoad>,
 }
@@ -173,6 +187,7 @@ impl Rating {
         // v = z p n
         let chain_speed = f64::from(teeth) * load.pitch * speed.abs() / std::f64::consts::TAU;
         let steady = load.steady.filter(|tension| *tension > 0.0);
+        let greatest = Some(load.tension.greatest).filter(|tension| *tension > 0.0);
         let over = |tension: f64| strength.breaking_load.map(|breaking| breaking / tension);
         // p = T / (k d b)
         let area = strength.bearing_area;
@@ -187,14 +202,18 @@ impl Rating {
             twin: twin
                 .map(|it| strand_factor * it.power(teeth, speed))
                 .filter(|power| *power > 0.0),
+            chain_speed,
+            lubrication_speeds: LubricationSpeeds::of(load.pitch),
             lubrication: (chain_speed > 0.0)
                 .then(|| Lubrication::at(load.pitch, chain_speed))
                 .flatten(),
-            static_safety: (load.tension.greatest > 0.0)
-                .then(|| over(load.tension.greatest))
-                .flatten(),
+            greatest_tension: greatest,
+            tight_pull: steady,
+            static_safety: greatest.and_then(over),
             dynamic_safety: steady.and_then(over),
             bearing_pressure: steady.zip(area).map(|(tension, area)| tension / area),
+            wear_limit: load.wear_limit,
+            life: wear::life(strength, load.pitch, load.sliding, load.wear_limit),
             shaft_loads: load.sprockets.iter().map(ShaftLoad::of).collect(),
             sprocket,
         }

@@ -14,6 +14,8 @@ pub struct Strength {
     pub breaking_load: Option<f64>,
     /// Area on which a pin bears on its bush, of one strand \[m²\], positive: diameter of the pin times length of the bush.
     pub bearing_area: Option<f64>,
+    /// Radius of the pin, on which it slides in its bush \[m\], positive.
+    pub pin_radius: Option<f64>,
     /// Strands side by side, from 1 on.
     pub strands: u32,
     /// Service factor \[–\], positive: by how much the duty is harder than a smooth load.
@@ -27,6 +29,7 @@ impl Default for Strength {
         Self {
             breaking_load: None,
             bearing_area: None,
+            pin_radius: None,
             strands: 1,
             service_factor: 1.0,
             capacity: Capacity::default(),

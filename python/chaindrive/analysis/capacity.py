@@ -15,16 +15,22 @@ _LIMITS = ("plates", "rollers", "galling", "maker")
 _NUMBERS = {
     "power_carried": ("W", "mean power carried"),
     "power_rated": ("W", "rated power"),
+    "power_twin": ("W", "rated power of the ASME B29.1 chain of the same pitch"),
     "strand_factor": ("1", "power over that of a single strand"),
     "service_factor": ("1", "service factor"),
+    "greatest_tension": ("N", "maximum link tension"),
+    "tight_pull": ("N", "mean pull of the tightest span"),
     "static_safety": ("1", "static safety factor: breaking load over maximum link tension"),
     "dynamic_safety": (
         "1",
         "dynamic safety factor: breaking load over mean pull of the tightest span",
     ),
-    "bearing_pressure": ("Pa", "bearing pressure of pins on bushes"),
+    "bearing_pressure": ("Pa", "bearing pressure of pins on bushes by the pull of the tight side"),
+    "wear_limit": ("1", "elongation at which the chain is worn out"),
+    "life_least": ("h", "least time until a new chain is worn out"),
+    "life_greatest": ("h", "greatest time until a new chain is worn out"),
 }
-_TEXTS = ("power_limited_by", "power_unrated", "lubrication")
+_TEXTS = ("power_limited_by", "power_unrated", "lubrication", "wear_limit_by")
 
 
 def rating(run: xr.Dataset, *, chain: str | None = None) -> xr.Dataset:
@@ -47,10 +53,14 @@ def rating(run: xr.Dataset, *, chain: str | None = None) -> xr.Dataset:
         ``power_limit`` (limit,) [W]: plates, rollers, galling, maker. ``shaft_load`` [N] and
         ``shaft_load_angle`` [deg] (sprocket,): mean force of the chain, from the x axis towards
         the y axis. Without dimensions ``power_carried``, ``power_rated`` [W], ``utilisation``
-        (with the service factor), ``strand_factor``, ``service_factor``, ``static_safety``
+        (with the service factor), ``strand_factor``, ``service_factor``,
+        ``power_twin`` [W] of the chain of ASME B29.1 that has the pitch, where the chain itself is
+        not rated, ``greatest_tension`` of a link and ``tight_pull`` [N], ``static_safety``
         (seven is usual, assumed), ``dynamic_safety`` (from eight on plates do not tire, Renold),
-        ``bearing_pressure`` [Pa]. Attributes ``power_limited_by``, ``power_unrated``,
-        ``lubrication`` (drip, bath or stream).
+        ``bearing_pressure`` [Pa] by ``tight_pull``, ``wear_limit`` [–], ``life_least`` and
+        ``life_greatest`` [h]: until a new chain is worn out, by a wear coefficient that nobody
+        measured. Attributes ``power_limited_by``, ``power_unrated``, ``lubrication`` (drip, bath
+        or stream), ``wear_limit_by``.
 
     Examples
     --------

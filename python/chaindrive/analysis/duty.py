@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 
 from chaindrive.analysis.capacity import rating
-from chaindrive.analysis.joints import joint_work
 from chaindrive.analysis.parts import one_chain, sprockets
 from chaindrive.analysis.seating import swing_speed
 from chaindrive.analysis.signal import recorded
@@ -19,14 +18,15 @@ __all__ = ["BEARING_PRESSURE", "ENDURANCE_FACTOR", "SEATING_SPEED", "STATIC_FACT
 
 STATIC_FACTOR = 7.0
 """Static safety factor, breaking load over maximum link tension [–]: assumed, 7 is usual."""
-ENDURANCE_FACTOR = 8.0
-"""Breaking load over the tension that recurs [–], below which plates do not tire."""
+ENDURANCE_FACTOR = 7.0
+"""Breaking load over the tension that recurs [–], below which plates do not tire: iwis."""
 BEARING_PRESSURE = 30e6
 """Bearing pressure that oiled joints bear for long [Pa]: assumed."""
 SEATING_SPEED = 4.0
 """Speed p ω at which rollers are seated that rollers and bushes bear for long [m/s]: assumed."""
 
-_RENOLD = "Renold, Transmission Chain Designer Guide: 8 : 1 keeps below the endurance limit"
+_IWIS = "iwis, Dauerfestigkeit: endurance is 15 to 20 % of the breaking load"
+_TWIN = "ASME B29.1 rates another chain: its twin of the same pitch"
 _MAKER = "the maker, as the scene has it"
 _RATING = "American Chain Association, 1982: 15 000 h under smooth load"
 
@@ -57,21 +57,25 @@ def utilisation(
     check     load                               limit
     ========= ================================== ================================
     static    maximum link tension               F_u / 7, assumed
-    endurance mean pull of the tightest span     F_u / 8 (Renold)
-    pressure  mean bearing pressure of joints    30 N/mm², assumed
+    endurance mean pull of the tightest span     F_u / 7 (iwis)
+    pressure  mean pull of the tight side over   30 N/mm², assumed
+              the bearing area
     seating   largest p ω of a sprocket          4 m/s, assumed
     power     mean power times service factor    rating at the smallest sprocket
+    twin      the same                           rating of the ASME B29.1 chain of
+                                                 this pitch, where it has none
     ========= ================================== ================================
 
-    F_u is the breaking load of the scene. The rating is that of `chaindrive.Drive.rated_power`, by
-    the formula of the American Chain Association or by what the scene says of the maker; the check
-    is there where the chain has one, and the run is a whole one. `rating` tells more of it. What is
-    assumed is a place to put limits of your own.
+    Tensions and pressure are those of the page and of `rating`, followed over all steps. F_u is the
+    breaking load of the scene. The rating is that of `chaindrive.Drive.rated_power`, by the formula
+    of the American Chain Association or by what the scene says of the maker; the twin is another
+    chain, an orientation. `rating` tells more of them. What is assumed is a place to put limits of
+    your own.
 
     Parameters
     ----------
     run
-        A run as for `joint_work`, with ``span_tension`` and ``sprocket_angle``.
+        A run that has ended, with ``sprocket_angle``.
     chain
         Name of the chain, where there are several.
     breaking_load
@@ -89,9 +93,10 @@ def utilisation(
     Raises
     ------
     ParameterError
-        A channel was not recorded, the breaking load is not known, or a limit is not positive.
+        A channel was not recorded, the run has not ended, the breaking load or the joints are not
+        known, or a limit is not positive.
     """
-    recorded(run, "span_tension", "link_tension", "sprocket_angle")
+    recorded(run, "sprocket_angle")
     for name, value in {
         "static_factor": static_factor,
         "endurance_factor": endurance_factor,
@@ -108,12 +113,11 @@ def utilisation(
             "or name a chain of the catalogue, `type`",
             "breaking_load",
         )
-    own = slice(which.first, which.first + which.links)
-    spans = run["span_tension"]
-    if "span_chain" in run.coords and which.name:
-        spans = spans.isel(span=np.flatnonzero(run["span_chain"] == which.name))
-    work = joint_work(run, chain=chain, pin_diameter=pin_diameter, bush_length=bush_length)
-    pressure = float(work["load_work"].sum() / work["sliding"].sum()) / work.attrs["area"]
+    made_for = rating(run, chain=chain)
+    if made_for["greatest_tension"].isnull():
+        message = f"nothing pulls at {which.title}, or the run has not ended: it has no tension"
+        raise ParameterError(message, "run")
+    pull = float(made_for["tight_pull"])
     wheels = [it for it in sprockets(run).values() if it.chain.name == which.name]
 
     def said(value: float, usual: float, source: str) -> str:
@@ -122,31 +126,31 @@ def utilisation(
     checks = [
         _Check(
             "static",
-            float(run["link_tension"].isel(link=own).max()),
+            float(made_for["greatest_tension"]),
             float(strength) / static_factor,
             "N",
             said(static_factor, STATIC_FACTOR, "assumed"),
         ),
-        _Check(
-            "pressure",
-            pressure,
-            bearing_pressure,
-            "Pa",
-            said(bearing_pressure, BEARING_PRESSURE, "assumed"),
-        ),
     ]
     # Strands have no span between sprockets, and perhaps no sprocket.
-    if spans.sizes["span"]:
-        checks.insert(
-            1,
+    if math.isfinite(pull):
+        area = which.bearing_area(pin_diameter, bush_length)
+        checks += [
             _Check(
                 "endurance",
-                float(spans.mean("time").max()),
+                pull,
                 float(strength) / endurance_factor,
                 "N",
-                said(endurance_factor, ENDURANCE_FACTOR, _RENOLD),
+                said(endurance_factor, ENDURANCE_FACTOR, _IWIS),
             ),
-        )
+            _Check(
+                "pressure",
+                pull / area,
+                bearing_pressure,
+                "Pa",
+                said(bearing_pressure, BEARING_PRESSURE, "assumed"),
+            ),
+        ]
     if wheels:
         checks.append(
             _Check(
@@ -158,9 +162,10 @@ def utilisation(
             )
         )
     # The run itself has summed up the power at every sprocket, with the rating of the smallest.
-    made_for = rating(run, chain=chain)
+    duty = float(made_for["service_factor"] * made_for["power_carried"])
+    if made_for["power_twin"].notnull():
+        checks.append(_Check("twin", duty, float(made_for["power_twin"]), "W", _TWIN))
     if made_for["power_rated"].notnull():
-        duty = float(made_for["service_factor"] * made_for["power_carried"])
         source = _MAKER if made_for.attrs["power_limited_by"] == "maker" else _RATING
         checks.append(_Check("power", duty, float(made_for["power_rated"]), "W", source))
     names, loads, limits, units, sources = zip(*checks, strict=True)

@@ -10,23 +10,28 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from chaindrive.analysis.joints import joint_work
-from chaindrive.analysis.parts import one_chain
+from chaindrive.analysis.parts import one_chain, sprockets
 from chaindrive.drive import Drive
 from chaindrive.errors import AssemblyError, ParameterError
 
-__all__ = ["COEFFICIENT", "COEFFICIENT_SOURCE", "LIMITS", "wear", "worn"]
+__all__ = ["BAND", "COEFFICIENT", "COEFFICIENT_SOURCE", "LIMITS", "wear", "worn"]
 
 COEFFICIENT = 3.0e-16
 """Wear coefficient k of an oiled joint, pin and bush together [m³/(N m)]: 3e-7 mm³/(N m)."""
+BAND = 10.0
+"""Factor within which `COEFFICIENT` lies on either side [–]."""
 COEFFICIENT_SOURCE = (
-    "assumed: 16B-1 around 19 and 57 teeth, 15 kW at 300 rpm, is about at its rating and then "
-    "worn by 3 % in the 15 000 h that ratings are for; with a hardness of 7 GPa K = k H is 2e-6"
+    "assumed, within a factor of ten: nobody measured one of a roller chain with its load and oil; "
+    "with a hardness of 7 GPa K = k H is 2e-6, as of oiled metals under boundary lubrication"
 )
-"""Origin of `COEFFICIENT`."""
+"""Origin of `COEFFICIENT` and `BAND`."""
 LIMITS = (0.01, 0.02, 0.03)
 """Elongations to which `wear` counts the hours [–]."""
 
 _HOUR = 3600.0
+_BOUNDS = ("least", "greatest")
+# Where the run does not say what its chain may grow by.
+_USUAL = (0.03, "as most chains (Diamond Chain)")
 # Travels in metres, or angles in radians, that a tensioner is given: the layout is refused where
 # one of them takes it into another part, so the widest that closes is the one that is wanted.
 _WITHIN = tuple(0.4 * 0.8**k for k in range(16))
@@ -36,7 +41,8 @@ def wear(
     run: xr.Dataset,
     *,
     hours: ArrayLike | None = None,
-    coefficient: float = COEFFICIENT,
+    coefficient: float | None = None,
+    coefficient_range: tuple[float, float] | None = None,
     chain: str | None = None,
     pin_diameter: float | None = None,
     bush_length: float | None = None,
@@ -51,30 +57,37 @@ def wear(
     into the bush. Every pitch has one joint, so the chain grows by h a pitch in the mean; a link of
     bushes stays as it is and one of pins grows by 2 h. Load and sliding are those of the run from
     the first hour to the last: `worn` gives the drive to run anew. Running-in, some 0.1 % in the
-    first hours, and the steep end after the hard layer is through are not in Archard's law.
+    first hours, and the steep end after the hard layer is through are not in Archard's law. A chain
+    without sprockets is refused: the coefficient is that of joints that turn on them.
 
     Parameters
     ----------
     run
         As for `joint_work`, at a steady speed and load.
     hours
-        Hours of running; 200 values to 3 % of elongation when absent.
+        Hours of running; when absent 200 values, alike in their logarithms, to the greatest life.
     coefficient
-        Wear coefficient k [m³/(N m)]; Archard's dimensionless K over the hardness.
+        Wear coefficient k [m³/(N m)], Archard's dimensionless K over the hardness; when absent
+        `COEFFICIENT`, which nobody measured, from k/`BAND` to k·`BAND`.
+    coefficient_range
+        Least and greatest k where it was measured; when absent with a coefficient, that alone.
     chain, pin_diameter, bush_length
         As for `joint_work`.
 
     Returns
     -------
     xarray.Dataset
-        ``depth`` h [m] and ``elongation`` ε [–] (hours,) in the mean over all joints, ``hours_to``
-        (limit,) [h] 1, 2 and 3 % of elongation, ``depth_rate`` (joint,) [m/h] as the joints were at
-        work during the run. Attributes ``coefficient``, ``coefficient_source``, ``circuits``.
+        ``depth`` h [m] and ``elongation`` ε [–] (hours,) in the mean over all joints with k,
+        ``elongation_range`` (hours, bound) with the least and the greatest k, ``hours_to`` (limit,
+        bound) [h] 1, 2 and 3 % of elongation, ``life`` (bound,) [h] to ``wear_limit`` [–], at which
+        a chain of this use is worn out (attribute ``wear_limit_by``); hours have two digits.
+        ``depth_rate`` (joint,) [m/h] as the joints were at work during the run. Attributes
+        ``coefficient``, ``coefficient_range``, ``coefficient_source``, ``circuits``.
 
     Raises
     ------
     ParameterError
-        As `joint_work`, or the coefficient is not positive.
+        As `joint_work`, the coefficient is not positive or not in its range, or nothing wears.
 
     Notes
     -----
@@ -88,33 +101,52 @@ def wear(
     >>> channels = ["roller_x", "roller_y", "link_tension", "sprocket_angle"]
     >>> drive = cd.scenes.industrial_16b()
     >>> run = cd.simulate(drive, until=0.1, every=2e-4, record=channels, error=False)
-    >>> bool(10_000 < wear(run)["hours_to"].sel(limit=0.03) < 20_000)
-    True
+    >>> found = wear(run)
+    >>> print(found["life"].values.astype(int), f"h to {100 * float(found['wear_limit'])} %")
+    [  770 77000] h to 1.5 %
     """
-    if not coefficient > 0.0:
-        message = f"coefficient = {coefficient}, must be positive [m³/(N m)]"
-        raise ParameterError(message, "coefficient")
+    k, ends = _coefficient(coefficient, coefficient_range)
+    which = one_chain(run, chain)
+    if not any(it.chain.name == which.name for it in sprockets(run).values()):
+        message = f"{which.title} passes no sprocket on which its joints turn: nothing wears"
+        raise ParameterError(message, "run", "take a drive with sprockets")
     work = joint_work(run, chain=chain, pin_diameter=pin_diameter, bush_length=bush_length)
-    pitch = one_chain(run, chain).pitch
+    pitch = which.pitch
     # dh/dt = k (∫ N ds)/(d b t)
-    rates = coefficient * work["load_work"] / (work.attrs["area"] * work.attrs["seconds"])
+    rates = k * work["load_work"] / (work.attrs["area"] * work.attrs["seconds"])
     rate = float(rates.mean()) * _HOUR
     if not rate > 0.0:
         message = "no joint turned under load during the run: nothing wears"
         raise ParameterError(message, "run", "run the drive at speed and under load")
+    # Growth an hour, with the greatest k and the least.
+    fastest, slowest = (rate / pitch * end / k for end in reversed(ends))
+
+    def hours_to(elongation: float) -> list[float]:
+        return [_two_digits(elongation / it) for it in (fastest, slowest)]
+
+    name = f"_{which.name}" if which.name else ""
+    limit = float(run.attrs.get(f"wear_limit{name}", _USUAL[0]))
+    by = str(run.attrs.get(f"wear_limit_by{name}", _USUAL[1]))
     if hours is None:
-        hours = np.linspace(0.0, max(LIMITS) * pitch / rate, 200)
+        hours = np.geomspace(0.1 * limit / fastest, limit / slowest, 200)
     span = np.atleast_1d(np.asarray(hours, dtype=float))
     depth = rate * span
     return xr.Dataset(
         {
             "depth": ("hours", depth, {"units": "m", "long_name": "wear depth of a joint"}),
             "elongation": ("hours", depth / pitch, {"units": "1", "long_name": "elongation"}),
+            "elongation_range": (
+                ("hours", "bound"),
+                np.stack([span * slowest, span * fastest], axis=1),
+                {"units": "1", "long_name": "elongation"},
+            ),
             "hours_to": (
-                "limit",
-                np.asarray(LIMITS) * pitch / rate,
+                ("limit", "bound"),
+                np.asarray([hours_to(it) for it in LIMITS]),
                 {"units": "h", "long_name": "hours to the elongation"},
             ),
+            "life": ("bound", hours_to(limit), {"units": "h", "long_name": "hours to the limit"}),
+            "wear_limit": ((), limit, {"units": "1", "long_name": "elongation of a worn chain"}),
             "depth_rate": (
                 "joint",
                 rates.to_numpy() * _HOUR,
@@ -124,16 +156,39 @@ def wear(
         coords={
             "hours": ("hours", span, {"units": "h", "long_name": "running time"}),
             "limit": ("limit", list(LIMITS), {"units": "1", "long_name": "elongation"}),
+            "bound": ("bound", list(_BOUNDS)),
             "joint": work["joint"],
         },
         attrs={
             "chain": work.attrs["chain"],
             "pitch": pitch,
-            "coefficient": coefficient,
-            "coefficient_source": COEFFICIENT_SOURCE if coefficient == COEFFICIENT else "given",
+            "coefficient": k,
+            "coefficient_range": list(ends),
+            "coefficient_source": COEFFICIENT_SOURCE if coefficient is None else "given",
+            "wear_limit_by": by,
             "circuits": work.attrs["circuits"],
         },
     )
+
+
+def _coefficient(
+    given: float | None, between: tuple[float, float] | None
+) -> tuple[float, tuple[float, float]]:
+    """Return a wear coefficient, and its least and greatest value [m³/(N m)]."""
+    k = COEFFICIENT if given is None else given
+    if not k > 0.0:
+        raise ParameterError(f"coefficient = {k}, must be positive [m³/(N m)]", "coefficient")
+    if between is None:
+        return k, (k / BAND, k * BAND) if given is None else (k, k)
+    low, high = between
+    if not 0.0 < low <= k <= high < np.inf:
+        message = f"coefficient_range = {between}, must be positive and hold {k:g} [m³/(N m)]"
+        raise ParameterError(message, "coefficient_range")
+    return k, (low, high)
+
+
+def _two_digits(value: float) -> float:
+    return float(f"{value:.1e}")
 
 
 def worn(

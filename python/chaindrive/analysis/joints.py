@@ -28,12 +28,12 @@ def joint_work(
 
     ::
 
-        s = Σ |r Δγ|,    W_N = Σ N |r Δγ|,    W = μ W_N,    p = N/(d b),    p·v = W_N/(d b t)
+        s = Σ |r Δγ|,    W_N = Σ N |r Δγ|,    W = μ W_N,    p = N/(n d b),    p·v = W_N/(n d b t)
 
     γ is the angle between the two links of a joint, r = d/2 the radius of the pin, b the length of
-    the bush. N is the force on the pin where ``joint_force`` was recorded, otherwise the mean
-    tension of the two links, as in the simulation; a joint under compression bears nothing. A
-    strand that swings turns its joints without sliding, within the elastic range of a
+    the bush, n the strands. N is the force on the pin where ``joint_force`` was recorded, otherwise
+    the mean tension of the two links, as in the simulation; a joint under compression bears
+    nothing. A strand that swings turns its joints without sliding, within the elastic range of a
     ``spring-slider``, and as far as a pin with play c rolls up its bush, c atan μ along the
     surface; both are taken out. Samples must be close enough to see a joint articulate: ten or more
     while a tooth passes.
@@ -57,10 +57,11 @@ def joint_work(
     -------
     xarray.Dataset
         ``sliding`` [m], ``load_work`` W_N and ``friction_work`` W [J], ``pressure`` [Pa], the mean
-        over the sliding, ``pressure_largest`` [Pa] and ``pressure_velocity`` p·v [W/m²]; (joint,).
+        over the sliding on tight and slack side (``bearing_pressure`` of `rating` is that of the
+        tight side), ``pressure_largest`` [Pa] and ``pressure_velocity`` p·v [W/m²]; (joint,).
         Joint i lies at roller i. A joint does its work where it stands on the loop, so only the
         means over all joints, or whole ``circuits`` (an attribute), stand for the drive.
-        ``friction`` is the coefficient μ of the scene, ``area`` the bearing area d b [m²],
+        ``friction`` is the coefficient μ of the scene, ``area`` the bearing area n d b [m²],
         ``seconds`` the time examined.
 
     Raises
@@ -79,7 +80,7 @@ def joint_work(
     """
     which = one_chain(run, chain)
     diameter, length = which.pin_diameter(pin_diameter), which.bush_length(bush_length)
-    area = diameter * length
+    area = which.bearing_area(diameter, length)
     turns, load = _turns_and_loads(run, which)
     slips = _slips(which, diameter / 2 * np.diff(turns, axis=0), load)
     between = 0.5 * (load[1:] + load[:-1])
@@ -94,7 +95,7 @@ def joint_work(
         "sliding": (sliding, "m", "sliding of the pin"),
         "load_work": (work, "J", "load times sliding"),
         "friction_work": (friction * work, "J", "friction work"),
-        "pressure": (pressure, "Pa", "mean bearing pressure"),
+        "pressure": (pressure, "Pa", "mean bearing pressure while the joint slides"),
         "pressure_largest": (load.max(axis=0) / area, "Pa", "greatest bearing pressure"),
         "pressure_velocity": (work / (area * seconds), "W/m^2", "pressure times velocity"),
     }

@@ -110,6 +110,11 @@ class ChainParts:
             )
         return _positive(given, "bush_length")
 
+    def bearing_area(self, diameter: float | None = None, length: float | None = None) -> float:
+        """Return the area on which pins bear on bushes [m²]: n d b, of all n strands."""
+        strands = int(self.scene.get("strands") or 1)
+        return strands * self.pin_diameter(diameter) * self.bush_length(length)
+
     @property
     def joint_friction(self) -> Mapping[str, Any]:
         """Friction of pins in bushes, as the scene has it; empty without."""

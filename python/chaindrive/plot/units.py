@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["in_trade", "rounded", "scientific", "written"]
+__all__ = ["hours", "in_trade", "rounded", "scientific", "written"]
 
 # Unit of the trade by SI unit, and how many of it one is.
 _TRADE = {
@@ -46,6 +46,11 @@ def scientific(value: float) -> str:
     digits, exponent = f"{value:.1e}".split("e")
     raised = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
     return f"{float(digits):g}·10{raised}"
+
+
+def hours(least: float, greatest: float) -> str:
+    """Return two times [h] in words, two digits each: ``1,500 to 150,000 h``."""
+    return " to ".join(f"{float(f'{it:.1e}'):,.6g}" for it in (least, greatest)) + " h"
 
 
 def rounded(value: float, unit: str) -> str:

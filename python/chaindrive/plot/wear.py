@@ -12,7 +12,7 @@ from chaindrive.plot.axes import colour_bar, drawing, legend_below
 from chaindrive.plot.docstrings import completed
 from chaindrive.plot.scheme import CURVES, LIMIT, MARK, STEEL
 from chaindrive.plot.source import analysed, chain_of, driver_of
-from chaindrive.plot.units import in_trade, rounded, scientific, written
+from chaindrive.plot.units import hours, in_trade, rounded, scientific, written
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,6 +30,8 @@ __all__ = [
 ]
 
 _BLUE, _ORANGE = CURVES[:2]
+# Checks whose bars have other names.
+_TITLES = {"twin": "power, ASME twin"}
 
 
 @completed(chain=True)
@@ -178,7 +180,7 @@ def losses(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axe
 
 @completed(chain=True)
 def joint_work(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
-    """Draw bearing pressure and p·v of the joints.
+    """Draw pressure and p·v of the joints.
 
     Returns
     -------
@@ -189,8 +191,8 @@ def joint_work(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) ->
     work = analysed(source, analysis.joint_work, "pressure_velocity", options, usual)
     with drawing(ax) as ax:
         joint = work["joint"]
-        ax.plot(joint, work["pressure"] / 1e6, ".", color=_BLUE, label="mean pressure")
-        ax.plot(joint, work["pressure_largest"] / 1e6, "_", color=_BLUE, label="largest pressure")
+        ax.plot(joint, work["pressure"] / 1e6, ".", color=_BLUE, label="mean while it slides")
+        ax.plot(joint, work["pressure_largest"] / 1e6, "_", color=_BLUE, label="largest")
         ax.set_ylim(bottom=0)
         ax.set_xlabel("joint")
         ax.set_ylabel("bearing pressure [N/mm²]", color=_BLUE)
@@ -208,30 +210,40 @@ def joint_work(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) ->
 
 @completed(of="wear", chain=True)
 def elongation(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
-    """Draw the elongation of a worn chain over hours."""
+    """Draw the elongation of a chain over hours: a band, for nobody knows how fast joints wear."""
     found = analysed(source, analysis.wear, "elongation", options, {"chain": chain_of})
     with drawing(ax) as ax:
-        ax.plot(found["hours"], 100 * found["elongation"], color=_BLUE)
-        last = float(found["hours"].max())
-        limits = zip(found["limit"].to_numpy(), found["hours_to"].to_numpy(), strict=True)
-        for limit, hours in limits:
-            if hours <= last * (1 + 1e-9):
-                ax.plot([hours, hours, 0], [0, 100 * limit, 100 * limit], ":", color=LIMIT)
-                ax.annotate(
-                    f"{100 * limit:.3g} % after {hours:,.0f} h",
-                    (hours, 100 * limit),
-                    xytext=(-6, 3),
-                    textcoords="offset points",
-                    ha="right",
-                    fontsize="small",
-                )
+        time = found["hours"].to_numpy()
+        ends = 100 * found["elongation_range"]
+        least, greatest = (ends.sel(bound=it).to_numpy() for it in ("least", "greatest"))
         k = scientific(found.attrs["coefficient"] * 1e9)
+        low, high = found.attrs["coefficient_range"]
+        name = f"k = {k} mm³/(N m)"
+        if low < high:
+            words = [scientific(it * 1e9) for it in (low, high)]
+            band = f"k = {words[0]} to {words[1]} mm³/(N m)"
+            ax.fill_between(time, least, greatest, color=_BLUE, alpha=0.25, linewidth=0, label=band)
+        ax.plot(time, 100 * found["elongation"], color=_BLUE, label=name)
+        limit = 100 * float(found["wear_limit"])
+        life = [float(it) for it in found["life"]]
+        told = hours(*life) if low < high else hours(life[0], life[0]).partition(" to ")[0] + " h"
+        ax.axhline(limit, linestyle=":", color=LIMIT)
+        ax.annotate(
+            f"worn out after {told}: {limit:.2g} %, {found.attrs['wear_limit_by']}",
+            (0.0, limit),
+            xycoords=("axes fraction", "data"),
+            xytext=(4, 3),
+            textcoords="offset points",
+            fontsize="small",
+        )
         source_of_k = str(found.attrs["coefficient_source"]).partition(":")[0]
-        ax.set_title(f"k = {k} mm³/(N m), {source_of_k}")
-        ax.set_xlim(0, last)
-        ax.set_ylim(0, 108 * float(found["elongation"].max()))
+        ax.set_title(f"wear coefficient {source_of_k}", fontsize="small")
+        ax.set_xscale("log")
+        ax.set_xlim(time[0], time[-1])
+        ax.set_ylim(0, 1.25 * limit)
         ax.set_xlabel("running time [h]")
         ax.set_ylabel("elongation [%]")
+        legend_below(ax)
     return ax
 
 
@@ -264,14 +276,15 @@ def rainflow(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> A
 
 @completed(chain=True)
 def utilisation(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
-    """Draw loads over limits; beyond the line at 100 % is too much."""
+    """Draw loads over limits; beyond the line at 100 % is too much. Hatched: that of the twin."""
     usual = {"chain": chain_of}
     found = analysed(source, analysis.utilisation, "utilisation", options, usual)
     with drawing(ax) as ax:
         used = 100 * found["utilisation"].to_numpy()
         colours = [MARK if it > 100 else _BLUE for it in used]
         names = [
-            f"{check}\n{rounded(float(load), str(unit))} of {rounded(float(limit), str(unit))}"
+            f"{_TITLES.get(str(check), check)}\n{rounded(float(load), str(unit))}"
+            f" of {rounded(float(limit), str(unit))}"
             for check, load, limit, unit in zip(
                 found["check"].to_numpy(),
                 found["load"].to_numpy(),
@@ -281,6 +294,10 @@ def utilisation(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -
             )
         ]
         bars = ax.barh(names, used, color=colours)
+        # A twin is another chain: its bar is no verdict on this one.
+        for bar, check in zip(bars, found["check"].to_numpy(), strict=True):
+            if check == "twin":
+                bar.set(hatch="///", facecolor="none", edgecolor=bar.get_facecolor())
         ax.bar_label(bars, [f"{it:.0f} %" for it in used], padding=3, fontsize="small")
         ax.axvline(100, color=LIMIT, linestyle="--")
         ax.set_xlim(0, 1.15 * max(100.0, float(np.nanmax(used))))

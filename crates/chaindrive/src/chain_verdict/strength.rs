@@ -1,16 +1,12 @@
 //! Strength of the chains under the loads of a run.
 
-use chaindrive_mechanics::{Chain, Drive, MissingRating, PlacedChain};
+use chaindrive_mechanics::{Chain, Drive, MissingRating};
 
 use super::{Check, Limit};
 use crate::rating::Rating;
 
 /// Newtons a square millimetre in a pascal.
 const PER_PASCAL: f64 = 1e-6;
-/// Elongation at which a chain is worn out \[–\]: of a large sprocket over its teeth, at most, and on fixed centres. Diamond Chain.
-const WORN: f64 = 0.03;
-const WORN_BY_TEETH: f64 = 2.0;
-const WORN_ON_FIXED_CENTRES: f64 = 0.015;
 
 /// Distance of the planes of two sprockets over that of their shafts that makers allow, and in fast drives: SEDIS, *Transmission chains*,
 /// 0.2 % and 0.1 %. Which drive is fast they do not say.
@@ -21,13 +17,13 @@ pub(crate) const ALIGNED_FAST: f64 = 1e-3;
 pub(super) fn strength_checks(ratings: &[Rating], drive: &Drive) -> Vec<Check> {
     let chains = ratings.iter().zip(&drive.chains);
     let mut checks: Vec<Check> = chains
-        .flat_map(|(it, placed)| of_chain(it, placed, drive))
+        .flat_map(|(it, placed)| of_chain(it, &placed.chain))
         .collect();
     checks.extend(out_of_line(drive));
     checks
 }
 
-fn of_chain(rating: &Rating, placed: &PlacedChain, drive: &Drive) -> Vec<Check> {
+fn of_chain(rating: &Rating, chain: &Chain) -> Vec<Check> {
     let of = rating.chain.as_str();
     let known = |limit: Limit, value: Option<f64>, why: &str| match value {
         Some(value) => Check::of(limit, of, value),
@@ -41,9 +37,9 @@ fn of_chain(rating: &Rating, placed: &PlacedChain, drive: &Drive) -> Vec<Check> 
         known(
             Limit::BearingPressure,
             pressure,
-            "pin and bush are not known: give chain.bearing_area",
+            "pin and bush are not known: give chain.type, or chain.joint.length of clearance joints",
         ),
-        worn(placed, of, drive),
+        worn(rating, chain, of),
     ];
     if rating.sprocket.is_some() {
         checks.push(power(rating, of));
@@ -72,46 +68,21 @@ fn power(rating: &Rating, of: &str) -> Check {
 }
 
 /// Elongation of the chain as it is against what its use allows.
-fn worn(placed: &PlacedChain, of: &str, drive: &Drive) -> Check {
-    let own = |index: &usize| drive.sprockets[*index].gap.teeth;
-    let Some(teeth) = placed.sprockets.iter().map(own).max() else {
+fn worn(rating: &Rating, chain: &Chain, of: &str) -> Check {
+    let Some(limit) = rating.wear_limit else {
         return Check::not_judged(Limit::Wear, of, "the chain passes no sprocket");
     };
-    let limit = WORN.min(WORN_BY_TEETH / f64::from(teeth));
-    let is_fixed = !takes_up(placed, drive);
-    let limit = if is_fixed {
-        limit.min(WORN_ON_FIXED_CENTRES)
-    } else {
-        limit
-    };
-    let elongation = elongation(&placed.chain);
+    let elongation = elongation(chain);
     // What rounding makes of a new chain is no wear.
     let elongation = if elongation > 1e-9 { elongation } else { 0.0 };
-    let on = if is_fixed { ", on fixed centres" } else { "" };
-    let note = format!("{:.2} % of {:.2} %{on}", 100.0 * elongation, 100.0 * limit);
-    Check::of(Limit::Wear, of, 100.0 * elongation / limit).with(&note)
+    let note = format!("{:.2} % of {limit}", 100.0 * elongation);
+    Check::of(Limit::Wear, of, 100.0 * elongation / limit.elongation).with(&note)
 }
 
 /// Mean length of the links over the pitch, less one.
 fn elongation(chain: &Chain) -> f64 {
     let mean = chain.lengths.iter().sum::<f64>() / chain.lengths.len() as f64;
     mean / chain.pitch - 1.0
-}
-
-/// A tensioner or a sprung centre takes up the growth of the chain.
-fn takes_up(placed: &PlacedChain, drive: &Drive) -> bool {
-    use chaindrive_mechanics::{GuideSupport, Support};
-    let by_sprocket = placed.sprockets.iter().any(|index| {
-        matches!(
-            drive.sprockets[*index].support,
-            Support::Tensioner(_) | Support::Springs { .. }
-        )
-    });
-    let by_guide = placed
-        .guides
-        .iter()
-        .any(|index| matches!(drive.guides[*index].support, GuideSupport::Tensioner(_)));
-    by_sprocket || by_guide
 }
 
 /// The span that is most out of line, where planes are known.

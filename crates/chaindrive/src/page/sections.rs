@@ -9,7 +9,7 @@ use crate::chain_verdict::CheckOutcome;
 use crate::describe::left_out;
 use crate::figure::{Measure, Scale, duration, figure, percent};
 use crate::precision::Judgement;
-use crate::rating::{Load, Rating};
+use crate::rating::{Load, Rating, told_hours};
 use crate::summary::{Bodies, ForceRecord, SprocketStatistics, Steadiness, Summary};
 use crate::{RunInReport, Simulation, Verdict};
 
@@ -546,8 +546,26 @@ fn rated(rating: &Rating) -> Vec<String> {
             Measure::Pressure.told(pressure)
         )
     });
-    let oil = rating
-        .lubrication
-        .map(|it| format!("Lubrication: {}.", it.name()));
-    std::iter::once(power).chain(pressure).chain(oil).collect()
+    let oil = rating.lubrication.zip(rating.lubrication_speeds);
+    let oil = oil.map(|(class, speeds)| {
+        let assumed = if speeds.is_tabled { "" } else { ", assumed" };
+        format!(
+            "Lubrication: {} at {}; drops do up to {}, a bath up to {}{assumed}.",
+            class.name(),
+            Measure::Speed.told(rating.chain_speed),
+            Measure::Speed.told_with(speeds.drip, 2),
+            Measure::Speed.told_with(speeds.bath, 2),
+        )
+    });
+    let wear = rating.wear_limit.map(|limit| {
+        let after = rating.life.map_or_else(String::new, |hours| {
+            format!(
+                " A new one grows by that in {} of running as here: the wear coefficient of 3·10⁻⁷ mm³/(N m) is assumed, within a factor of ten.",
+                told_hours(hours)
+            )
+        });
+        format!("Chain{of} is worn out at {limit}.{after}")
+    });
+    let sentences = std::iter::once(power).chain(pressure);
+    sentences.chain(oil).chain(wear).collect()
 }

@@ -2,6 +2,8 @@
 
 use chaindrive_mechanics::{Extremes, Strength};
 
+use super::WearLimit;
+
 /// Share of the power of a chain that a sprocket takes part with, at least; idlers do not.
 const TAKES_PART: f64 = 0.1;
 
@@ -23,6 +25,11 @@ pub struct Load {
     pub pitch: f64,
     /// Greatest mean tension of a span \[N\]; none without spans that rollers hold.
     pub steady: Option<f64>,
+    /// Load times sliding of a joint a second, in the mean over the joints: r Σ T ω/X over the ends of X links' spans, with the mean
+    /// tension T of the span, the speed ω of the sprocket at its end and the radius r of the pin \[W\]; none where one of them is not known.
+    pub sliding: Option<f64>,
+    /// Elongation at which it is worn out; none where it passes no sprocket.
+    pub wear_limit: Option<WearLimit>,
     /// Every sprocket that it passes.
     pub sprockets: Vec<SprocketDuty>,
 }

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use chaindrive_mechanics::{Extremes, PowerLimits};
 
 use super::*;
+use crate::catalogue::{Number, catalogue};
 
 const RPM: f64 = TAU / 60.0;
 
@@ -19,6 +20,7 @@ fn american(strands: u32) -> Strength {
     Strength {
         breaking_load: Some(56.7e3),
         bearing_area: Some(176.2e-6),
+        pin_radius: Some(3.96e-3),
         strands,
         capacity: Capacity::American(INCH_PITCH),
         ..Strength::default()
@@ -49,6 +51,11 @@ fn load(strength: Strength) -> Load {
         power: 15e3,
         pitch: 0.0254,
         steady: Some(6.3e3),
+        sliding: Some(18.7),
+        wear_limit: Some(WearLimit {
+            elongation: 0.015,
+            bound: WearBound::FixedCentres,
+        }),
         sprockets: vec![
             duty("driven", 57, 14.8e3, [-3e3, 4e3]),
             duty("driver", 19, -15e3, [6e3, 0.0]),
@@ -147,7 +154,13 @@ fn lubrication_follows_the_chain_speed() {
         (0.0254, 169.0, Some(Lubrication::Drip)),
         (0.0508, 999.0, Some(Lubrication::Bath)),
         (0.0508, 1001.0, Some(Lubrication::Stream)),
-        (0.0889, 100.0, None),
+        // Between two rows: √(220 · 170) ft/min at √(0.75 · 1) in. Beyond the table by its ends: 300 · 3^½ at ¼ in, 100/3^(log₄ 2) = 57.7 at 4 in.
+        (0.866_025 * 0.0254, 193.3, Some(Lubrication::Drip)),
+        (0.866_025 * 0.0254, 193.5, Some(Lubrication::Bath)),
+        (0.00635, 519.0, Some(Lubrication::Drip)),
+        (0.00635, 520.0, Some(Lubrication::Bath)),
+        (0.1016, 57.7, Some(Lubrication::Drip)),
+        (0.1016, 57.8, Some(Lubrication::Bath)),
         (0.0, 100.0, None),
     ] {
         let found = Lubrication::at(pitch, speed * foot_a_minute);
@@ -155,6 +168,45 @@ fn lubrication_follows_the_chain_speed() {
     }
     let class = Rating::of(&load(american(1))).lubrication;
     assert_eq!(class, Some(Lubrication::Bath), "2.4 m/s, 475 ft/min");
+}
+
+/// Small chains may run faster in drops, and every chain of the catalogue has its speeds.
+#[test]
+fn every_chain_of_the_catalogue_has_its_lubrication() {
+    let chains = catalogue().iter();
+    let pitches = chains.filter_map(|chain| chain.number(Number::Pitch));
+    let mut pitches: Vec<f64> = pitches.collect();
+    pitches.sort_by(f64::total_cmp);
+    pitches.dedup();
+    let speeds = pitches.iter().map(|pitch| LubricationSpeeds::of(*pitch));
+    let speeds: Vec<LubricationSpeeds> = speeds.map(Option::unwrap).collect();
+    assert_eq!(speeds.iter().filter(|it| it.is_tabled).count(), 8);
+    for pair in speeds.windows(2) {
+        assert!(pair[0].drip > pair[1].drip && pair[0].bath > pair[1].bath);
+        assert!(pair[0].drip < 0.2 * pair[0].bath, "{pair:?}");
+    }
+}
+
+/// By hand: ε p d b/(k Q) = 0.015 · 25.4 mm · 176.2 mm²/(3·10⁻⁷ mm³/(N m) · 18.7 W) = 11 970 000 s = 3324 h; two strands last twice as long.
+#[test]
+fn life_is_archards_within_a_factor_of_ten() {
+    let by_hand = 0.015 * 25.4e-3 * 176.2e-6 / (3e-16 * 18.7) / 3600.0;
+    for strands in [1, 2] {
+        let [least, greatest] = Rating::of(&load(american(strands))).life.unwrap();
+        let expected = f64::from(strands) * by_hand;
+        assert!((least * 10.0 / expected - 1.0).abs() < 1e-12, "{least}");
+        assert!(
+            (greatest / 10.0 / expected - 1.0).abs() < 1e-12,
+            "{greatest}"
+        );
+    }
+    let life = Rating::of(&load(american(1))).life.unwrap();
+    assert_eq!(told_hours(life), "330 to 33,000 h");
+    assert_eq!(told_hours([0.956, 9.94]), "0.96 to 9.9 h");
+    assert_eq!(told_hours([99.6, 1_249_999.0]), "100 to 1,200,000 h");
+    let mut still = load(american(1));
+    still.sliding = Some(0.0);
+    assert_eq!(Rating::of(&still).life, None);
 }
 
 #[test]

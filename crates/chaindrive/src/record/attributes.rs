@@ -211,12 +211,26 @@ fn rating(story: &mut Story, of: &Rating, is_only: bool) {
         if let Err(why @ MissingRating::SourceMissing { .. }) = of.limits {
             story.number(&named("power_carried"), of.carried);
             story.text(&named("power_unrated"), &why.to_string());
+            if let Some(twin) = of.twin {
+                story.number(&named("power_twin"), twin);
+            }
+            story.number(&named("service_factor"), of.service_factor);
         }
         if let Some(class) = of.lubrication {
             story.text(&named("lubrication"), class.name());
         }
     }
+    if let Some(limit) = of.wear_limit {
+        story.number(&named("wear_limit"), limit.elongation);
+        story.text(&named("wear_limit_by"), limit.bound.words());
+    }
+    if let Some([least, greatest]) = of.life {
+        story.number(&named("life_least"), least);
+        story.number(&named("life_greatest"), greatest);
+    }
     let numbers = [
+        ("greatest_tension", of.greatest_tension),
+        ("tight_pull", of.tight_pull),
         ("static_safety", of.static_safety),
         ("dynamic_safety", of.dynamic_safety),
         ("bearing_pressure", of.bearing_pressure),

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{SpanStatistics, SprocketStatistics};
 use crate::Simulation;
-use crate::rating::{Load, SprocketDuty};
+use crate::rating::{Load, SprocketDuty, WearLimit};
 
 /// Sums over readings, by chain.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -24,6 +24,9 @@ struct DutySums {
     links: usize,
     spans: Range<usize>,
     sprockets: Vec<usize>,
+    /// Sprockets at the ends of every span.
+    ends: Vec<[usize; 2]>,
+    wear_limit: Option<WearLimit>,
     /// Links that were pressed, over all readings.
     pressed: f64,
 }
@@ -32,6 +35,7 @@ impl ChainDuties {
     pub(super) fn new(simulation: &Simulation) -> Self {
         let drive = &simulation.assembled().drive;
         let sizes = simulation.system().chain_sizes();
+        let ends = simulation.system().span_sprockets();
         let mut first_span = 0;
         let of_chain = |(placed, (name, size)): (&PlacedChain, (String, ChainSize))| {
             let spans = first_span..first_span + size.spans;
@@ -41,7 +45,9 @@ impl ChainDuties {
                 strength: placed.chain.strength,
                 pitch: placed.chain.pitch,
                 links: size.links,
+                ends: ends.get(spans.clone()).unwrap_or_default().to_vec(),
                 spans,
+                wear_limit: WearLimit::of(placed, drive),
                 sprockets: placed.sprockets.clone(),
                 pressed: 0.0,
             }
@@ -88,6 +94,7 @@ impl ChainDuties {
         sprockets: &[SprocketStatistics],
         tension: Extremes,
     ) -> Load {
+        let sliding = chain.sliding(spans, sprockets);
         let duty = |index: &usize| sprockets.get(*index).map(SprocketStatistics::duty);
         let sprockets: Vec<SprocketDuty> = chain.sprockets.iter().filter_map(duty).collect();
         let spans = spans.get(chain.spans.clone()).into_iter().flatten();
@@ -103,7 +110,28 @@ impl ChainDuties {
                 .fold(0.0, f64::max),
             pitch: chain.pitch,
             steady: means.reduce(f64::max),
+            sliding,
+            wear_limit: chain.wear_limit,
             sprockets,
         }
+    }
+}
+
+impl DutySums {
+    /// Load times sliding of a joint a second, in the mean, see [`Load::sliding`]; `spans` and `sprockets` are those of all chains.
+    fn sliding(&self, spans: &[SpanStatistics], sprockets: &[SprocketStatistics]) -> Option<f64> {
+        let radius = self.strength.pin_radius?;
+        let spans = spans.get(self.spans.clone())?.iter().zip(&self.ends);
+        let speed = |end: &usize| Some(sprockets.get(*end)?.speed.abs());
+        let mut sum = 0.0;
+        for (span, ends) in spans {
+            // A span that no roller holds pulls at no joint.
+            let tension = Some(span.mean()).filter(|it| *it > 0.0).unwrap_or(0.0);
+            for end in ends {
+                sum += tension * speed(end)?;
+            }
+        }
+        // Q = r Σ T ω/X
+        Some(radius * sum / self.links as f64)
     }
 }

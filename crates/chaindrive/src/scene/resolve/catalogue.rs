@@ -83,10 +83,16 @@ fn american(chain: &CatalogueChain, pitch: f64) -> Option<PowerLimits> {
 /// Area on which a pin bears on its bush \[m²\]: d b, of the joints as written or those of the catalogue.
 pub(super) fn bearing_area(text: &schema::Chain, of_type: Option<&CatalogueChain>) -> Option<f64> {
     let joint = text.joint.as_ref();
-    let diameter = joint.and_then(|joint| joint.pin_diameter).map(f64::from);
     let length = joint.and_then(|joint| joint.length).map(f64::from);
-    let diameter = diameter.or_else(|| of_type?.number(Number::PinDiameter))?;
-    Some(diameter * length.or_else(|| of_type?.joint_length())?)
+    let length = length.or_else(|| of_type?.joint_length())?;
+    Some(pin_diameter(text, of_type)? * length)
+}
+
+/// Diameter of the pin \[m\], of the joints as written or those of the catalogue.
+pub(super) fn pin_diameter(text: &schema::Chain, of_type: Option<&CatalogueChain>) -> Option<f64> {
+    let joint = text.joint.as_ref();
+    let given = joint.and_then(|joint| joint.pin_diameter).map(f64::from);
+    given.or_else(|| of_type?.number(Number::PinDiameter))
 }
 
 /// Difference of pitches, relative, up to which they are the same.

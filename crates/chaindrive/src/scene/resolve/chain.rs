@@ -176,6 +176,7 @@ fn strength(
     Strength {
         breaking_load: text.breaking_load.map(f64::from),
         bearing_area: catalogue::bearing_area(text, of_type),
+        pin_radius: catalogue::pin_diameter(text, of_type).map(|diameter| 0.5 * diameter),
         strands,
         service_factor,
         capacity,
