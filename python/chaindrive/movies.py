@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from chaindrive._core import NewFile
+from chaindrive.errors import WriteError
 from chaindrive.extras import extra
 from chaindrive.plot.scheme import CARRIER, GUIDE, OUTLINE, PLATES, STEEL
 from chaindrive.plot.units import in_trade, written
@@ -79,8 +81,24 @@ def movie(
         The name ends in something else, or the store of the run is damaged.
     ModuleNotFoundError
         The extra ``movie`` is not installed.
+    WriteError
+        The file cannot be written; what was in its place is still there.
     """
     place = Path(fspath(path))
+    _write(run, place, frames, rate, size, progress=progress)
+    return place
+
+
+def _write(
+    run: xr.Dataset | str,
+    place: Path,
+    frames: int = PICTURES,
+    rate: float = RATE,
+    size: tuple[int, int] = SIZE,
+    *,
+    overwrite: bool = True,
+    progress: bool | Callable[[float], object] = False,
+) -> None:
     if frames < 1:
         raise ValueError(f"frames = {frames}, must be 1 or more")
     if place.suffix not in (".mp4", ".gif"):
@@ -88,12 +106,17 @@ def movie(
     extra("imageio.v2", "movies")
     if place.suffix == ".mp4":
         extra("imageio_ffmpeg", "movies in .mp4")
+    file = NewFile(place, overwrite=overwrite)
+    if isinstance(run, str):
+        from chaindrive.results import open_result
+
+        run = open_result(run)
     samples = np.unique(np.linspace(0, run.sizes["time"] - 1, frames).round().astype(int))
     stage = _Stage(run, samples, size)
     with told(progress, "movie") as tell:
         write = _mp4 if place.suffix == ".mp4" else _gif
-        write(stage.pictures(tell), place, rate)
-    return place
+        with file as part:
+            write(stage.pictures(tell), part, rate)
 
 
 def _mp4(pictures: Iterator[NDArray[np.uint8]], place: Path, rate: float) -> None:
@@ -101,8 +124,17 @@ def _mp4(pictures: Iterator[NDArray[np.uint8]], place: Path, rate: float) -> Non
     how: dict[str, Any] = {"codec": "libx264", "quality": None}
     how["output_params"] = ["-preset", "ultrafast", "-crf", "18"]
     with extra("imageio.v2", "movies").get_writer(place, fps=rate, **how) as writer:
+        count = 0
         for picture in pictures:
             writer.append_data(picture)
+            count += 1
+    # The encoder is another process, and does not tell that the disk was full.
+    try:
+        found, _ = extra("imageio_ffmpeg", "movies in .mp4").count_frames_and_secs(place)
+    except RuntimeError:
+        found = 0
+    if found != count:
+        raise OSError(f"the encoder wrote {found} of {count} pictures: is the disk full?")
 
 
 def _gif(pictures: Iterator[NDArray[np.uint8]], place: Path, rate: float) -> None:
@@ -296,15 +328,13 @@ def _line(share: float) -> None:
 
 def command(source: str, output: Path, *, frames: int | None, overwrite: bool, quiet: bool) -> int:
     """Make the movie that a command line asks for, and return the exit code."""
-    from chaindrive.results import open_result
-
-    if output.exists() and not overwrite:
-        print(f"{output}: there is already something here; pass --overwrite", file=sys.stderr)
-        return 3
     shown = _line if sys.stderr.isatty() and not quiet else False
     try:
-        run = open_result(source)
-        movie(run, output, frames=PICTURES if frames is None else frames, progress=shown)
+        number = PICTURES if frames is None else frames
+        _write(source, output, number, overwrite=overwrite, progress=shown)
+    except WriteError as error:
+        print(error, file=sys.stderr)
+        return 3
     except (KeyError, ValueError, FileNotFoundError, ModuleNotFoundError) as error:
         message = error.args[0] if isinstance(error, KeyError) else error
         print(f"{source}: {message}", file=sys.stderr)
