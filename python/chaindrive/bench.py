@@ -12,34 +12,28 @@ import numpy as np
 import xarray as xr
 
 from chaindrive._core import NewFile
-from chaindrive.errors import WriteError
 from chaindrive.extras import extra
 
 __all__ = ["command"]
 
 
-def command(run: Callable[[], int], table: Path, picture: Path, *, overwrite: bool) -> int:
+def command(run: Callable[[], int], table: Path, picture: Path, place: NewFile) -> int:
     """Run the command, which writes its table, draw that, and return the exit code."""
     try:
         pyplot = extra("matplotlib.pyplot", "diagrams")
     except ModuleNotFoundError as error:
         print(f"{picture}: will not be drawn, {error}", file=sys.stderr)
         return run()
-    try:
-        place = NewFile(picture, overwrite=overwrite)
-        code = run()
-        if code:
-            return code
-        from chaindrive.plot import work_precision
+    code = run()
+    if code:
+        return code
+    from chaindrive.plot import work_precision
 
-        pyplot.switch_backend("svg")
-        work_precision(_read(table))
-        drawn = io.BytesIO()
-        pyplot.savefig(drawn)
-        place.write(drawn.getvalue())
-    except WriteError as error:
-        print(error, file=sys.stderr)
-        return 3
+    pyplot.switch_backend("svg")
+    work_precision(_read(table))
+    drawn = io.BytesIO()
+    pyplot.savefig(drawn)
+    place.write(drawn.getvalue())
     return 0
 
 

@@ -85,20 +85,13 @@ def movie(
         The file cannot be written; what was in its place is still there.
     """
     place = Path(fspath(path))
-    _write(run, place, frames, rate, size, progress=progress)
+    _check(place, frames)
+    _write(run, NewFile(place), place.suffix, frames, rate, size, progress)
     return place
 
 
-def _write(
-    run: xr.Dataset | str,
-    place: Path,
-    frames: int = PICTURES,
-    rate: float = RATE,
-    size: tuple[int, int] = SIZE,
-    *,
-    overwrite: bool = True,
-    progress: bool | Callable[[float], object] = False,
-) -> None:
+def _check(place: Path, frames: int) -> None:
+    """Refuse what is no movie, and tell what is missing for one."""
     if frames < 1:
         raise ValueError(f"frames = {frames}, must be 1 or more")
     if place.suffix not in (".mp4", ".gif"):
@@ -106,16 +99,22 @@ def _write(
     extra("imageio.v2", "movies")
     if place.suffix == ".mp4":
         extra("imageio_ffmpeg", "movies in .mp4")
-    file = NewFile(place, overwrite=overwrite)
-    if isinstance(run, str):
-        from chaindrive.results import open_result
 
-        run = open_result(run)
+
+def _write(
+    run: xr.Dataset,
+    place: NewFile,
+    suffix: str,
+    frames: int,
+    rate: float = RATE,
+    size: tuple[int, int] = SIZE,
+    progress: bool | Callable[[float], object] = False,
+) -> None:
     samples = np.unique(np.linspace(0, run.sizes["time"] - 1, frames).round().astype(int))
     stage = _Stage(run, samples, size)
     with told(progress, "movie") as tell:
-        write = _mp4 if place.suffix == ".mp4" else _gif
-        with file as part:
+        write = _mp4 if suffix == ".mp4" else _gif
+        with place as part:
             write(stage.pictures(tell), part, rate)
 
 
@@ -326,15 +325,17 @@ def _line(share: float) -> None:
     print(f"\r{text}", end="", file=sys.stderr, flush=True)
 
 
-def command(source: str, output: Path, *, frames: int | None, overwrite: bool, quiet: bool) -> int:
+def command(source: str, output: Path, place: NewFile, *, frames: int | None, quiet: bool) -> int:
     """Make the movie that a command line asks for, and return the exit code."""
+    from chaindrive.results import open_result
+
     shown = _line if sys.stderr.isatty() and not quiet else False
     try:
         number = PICTURES if frames is None else frames
-        _write(source, output, number, overwrite=overwrite, progress=shown)
-    except WriteError as error:
-        print(error, file=sys.stderr)
-        return 3
+        _check(output, number)
+        _write(open_result(source), place, output.suffix, number, progress=shown)
+    except WriteError:
+        raise
     except (KeyError, ValueError, FileNotFoundError, ModuleNotFoundError) as error:
         message = error.args[0] if isinstance(error, KeyError) else error
         print(f"{source}: {message}", file=sys.stderr)

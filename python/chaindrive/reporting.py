@@ -226,18 +226,16 @@ def _replay(run: xr.Dataset) -> str:
     )
 
 
-def command(source: str, output: Path, *, overwrite: bool, quiet: bool) -> int:
+def command(source: str, output: Path, place: NewFile, *, quiet: bool) -> int:
     """Make the report that a command line asks for, and return the exit code."""
     if output.suffix not in (".html", ".htm"):
         print(f"{output}: the name must end in .html", file=sys.stderr)
         return 2
     try:
-        place = NewFile(output, overwrite=overwrite)
         text = _report(_named(source)).encode()
         place.write(text)
-    except WriteError as error:
-        print(error, file=sys.stderr)
-        return 3
+    except WriteError:
+        raise
     except (ChaindriveError, ValueError, OSError, ModuleNotFoundError) as error:
         print(f"{source}: {error}", file=sys.stderr)
         return 2

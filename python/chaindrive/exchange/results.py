@@ -66,7 +66,8 @@ def save(run: xr.Dataset, path: str | PathLike[str]) -> list[Path]:
         for package in ("h5netcdf", "h5py"):
             extra(package, "results in NetCDF")
         with NewFile(file) as part:
-            run.to_netcdf(part, engine="h5netcdf")
+            # Made in memory: on a full disk HDF5 ends the whole process.
+            part.write_bytes(run.to_netcdf(engine="h5netcdf"))
         return [file]
     if file.suffix not in (".csv", ".parquet"):
         hint = "a Zarr store is written by `simulate(…, output=…)`"
