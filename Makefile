@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip install --quiet --no-compile
 
 # What the wheel is made of.
 SOURCES := Cargo.toml Cargo.lock pyproject.toml \
-	$(shell find crates -type f \( -path '*/src/*' -o -path '*/scenes/*' -o -path '*/page/*' -o -name Cargo.toml -o -name build.rs \)) \
+	$(shell find crates -type f \( -path '*/src/*' -o -path '*/scenes/*' -o -path '*/page/*' -o -name Cargo.toml -o -name build.rs -o -name third-party.txt \)) \
 	$(shell find python -type f \( -name '*.py' -o -name '*.pyi' -o -name '*.css' -o -name py.typed \))
 
 # As compilers of this system call the library that goes into functional mock-up units.

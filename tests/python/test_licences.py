@@ -5,14 +5,17 @@ import shutil
 import subprocess
 import sys
 import tomllib
+import zipfile
 from pathlib import Path
 
 import pytest
 
+import chaindrive as cd
+
 ROOT = Path(__file__).parent.parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
-from licences import named, packages  # noqa: E402
+from licences import FILE, named, packages  # noqa: E402
 
 
 @pytest.mark.skipif(shutil.which("cargo") is None, reason="cargo knows what is compiled")
@@ -28,3 +31,10 @@ def test_every_library_has_its_licence():
     locked = tomllib.loads((ROOT / "Cargo.lock").read_text())["package"]
     unknown = listed - {f"{it['name']} {it['version']}" for it in locked}
     assert not unknown, "make licences"
+
+
+def test_a_unit_carries_the_licences(tmp_path):
+    unit = cd.scenes.spinning_ring().fmu(tmp_path / "ring.fmu", run=False, library=__file__)
+    with zipfile.ZipFile(unit) as archive:
+        held = archive.read("documentation/licenses/third-party.txt")
+    assert held == FILE.read_bytes()

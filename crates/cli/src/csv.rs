@@ -345,7 +345,7 @@ pub(crate) fn claim(path: &Path, existing: Existing) -> Result<TableClaim, Failu
             "",
         ));
     }
-    if let Some(folder) = path.parent() {
+    if let Some(folder) = path.parent().filter(|it| !it.exists()) {
         fs::create_dir_all(folder).map_err(|source| failed(path, source))?;
     }
     let claimed = TableClaim {

@@ -98,6 +98,7 @@ impl From<Infallible> for Failure {
 fn remedy(error: &std::io::Error) -> &'static str {
     match error.kind() {
         ErrorKind::NotFound => "; make the folder first, or choose another",
+        ErrorKind::NotADirectory => "; choose a place in a folder",
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
             "; choose a place where you may write"
         }

@@ -12,6 +12,9 @@ use crate::description::Standard;
 use crate::export::LIBRARY;
 use crate::model::Model;
 
+/// Licences of the libraries within that of units: `make licences`.
+const THIRD_PARTY: &str = include_str!("../third-party.txt");
+
 /// Why a unit was not written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -93,6 +96,11 @@ pub fn package(model: &Model, standard: Standard, library: &[u8]) -> Result<Vec<
         &format!("binaries/{folder}/{LIBRARY}{ending}"),
         library,
         0o755,
+    )?;
+    file(
+        "documentation/licenses/third-party.txt",
+        THIRD_PARTY.as_bytes(),
+        0o644,
     )?;
     for (name, text) in model.resources() {
         file(&format!("resources/{name}"), text.as_bytes(), 0o644)?;

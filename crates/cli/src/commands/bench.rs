@@ -72,14 +72,15 @@ impl Arguments {
 }
 
 pub(crate) fn bench(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
-    let place = new_file(&named(&arguments.output, "csv"), arguments.overwrite)?;
     let settings = RunArguments::until(arguments.until.as_deref());
     let Request { scene, run, .. } = settings.apply(&arguments.scene.load(interrupted)?)?;
+    let variants = variants(arguments, &scene)?;
     let drive = scene.drive()?;
+    let place = new_file(&named(&arguments.output, "csv"), arguments.overwrite)?;
     let start = waiting("assembling", interrupted, |stop| assemble(&drive, stop));
     let start = Failure::or_interrupted(start, scene.name())?;
     let study = Study {
-        variants: variants(arguments, &scene)?,
+        variants,
         until: arguments.until.is_some().then_some(run.until),
         repeats: arguments.repeats,
         replicates: arguments.replicates,

@@ -20,7 +20,7 @@ struct Maker {
     end: &'static [u8],
 }
 
-const BENCH: &str = "bench spinning_ring --until '0.1 ms' --repeats 1 --replicates 0 --methods verlet --steps 4e-5 -o new";
+const BENCH: &str = "bench spinning_ring --until '0.1 ms' --repeats 1 --replicates 1 --methods verlet --steps 4e-5 -o new";
 
 const MAKERS: [Maker; 4] = [
     Maker {
@@ -73,7 +73,10 @@ fn workplace() -> tempfile::TempDir {
 fn only(at: &Path, files: &[&str]) {
     let expected: BTreeSet<_> = files.iter().chain(&["ring.zarr"]).copied().collect();
     let found = names(at);
-    assert_eq!(found.iter().map(String::as_str).collect::<BTreeSet<_>>(), expected);
+    assert_eq!(
+        found.iter().map(String::as_str).collect::<BTreeSet<_>>(),
+        expected
+    );
 }
 
 /// What cannot be written is told before anything is simulated, with the code of results that cannot be written.
