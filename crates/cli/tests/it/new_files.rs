@@ -276,16 +276,14 @@ fn whatever_the_moment_and_the_block() {
 fn names_are_looked_at_before_the_work() {
     let folder = folder();
     let at = folder.path();
-    let begin = Instant::now();
     let line = words("fmu marine_engine --run-in '8 turns of crank-' -o new.fmu");
     let (code, _, err) = run(at, &line);
     assert_eq!(code, 2, "{err}");
     assert!(err.contains("turns of crank-: there are crank"), "{err}");
-    let line = words("fmu marine_engine --library nowhere -o new.fmu");
+    // A run that would take days.
+    let line = words("fmu marine_engine --until 1e5 --library nowhere -o new.fmu");
     let (code, _, err) = run(at, &line);
     assert_eq!(code, 2, "{err}");
     assert!(err.contains("nowhere: the library"), "{err}");
-    // A run of the scene takes ten times as long.
-    assert!(begin.elapsed() < Duration::from_secs(1));
     assert!(names(at).is_empty());
 }
