@@ -43,9 +43,12 @@ impl NewFile {
     }
 
     /// Path to write to.
-    fn __enter__(&mut self) -> PyResult<PathBuf> {
+    fn __enter__<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let part = self.place().and_then(CoreFile::begin).or_raise()?;
-        Ok(self.part.insert(part).path().to_owned())
+        // Ctrl-C is heard while Python makes a path: nobody would leave the context, and the part goes here.
+        let path = part.path().into_pyobject(py)?.into_any();
+        self.part = Some(part);
+        Ok(path)
     }
 
     /// Puts the file in place, or removes what there is of it: a refusal of the system is then told with the path of the place.
