@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip install --quiet --no-compile
 
 # What the wheel is made of.
 SOURCES := Cargo.toml Cargo.lock pyproject.toml \
-	$(shell find crates -type f \( -path '*/src/*' -o -path '*/scenes/*' -o -path '*/page/*' -o -name Cargo.toml -o -name build.rs \)) \
+	$(shell find crates -type f \( -path '*/src/*' -o -path '*/scenes/*' -o -path '*/page/*' -o -name Cargo.toml -o -name build.rs -o -name third-party.txt \)) \
 	$(shell find python -type f \( -name '*.py' -o -name '*.pyi' -o -name '*.css' -o -name py.typed \))
 
 # As compilers of this system call the library that goes into functional mock-up units.
@@ -33,7 +33,7 @@ CARGO_TEST := cargo test $(QUICK) --workspace --quiet --no-fail-fast --tests
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test quick slowest check check-rust check-python test-rust test-python bench report estimates bicycle-losses how-real validation validation-report docs pages site wheels clean
+.PHONY: help setup run test quick slowest licences check check-rust check-python test-rust test-python bench report estimates bicycle-losses how-real validation validation-report docs pages site wheels clean
 # A build that failed leaves no stamp behind.
 .DELETE_ON_ERROR:
 
@@ -73,6 +73,9 @@ test-rust: $(VENV)/ready
 
 test-python: setup $(VENV)/test-ready
 	$(BIN)/pytest --numprocesses 2 --dist loadfile
+
+licences: ## Write the licences of all libraries that ship into crates/couple/third-party.txt
+	$(PYTHON) tests/licences.py
 
 bench: ## Measure kernels and steps
 	cargo bench
@@ -114,6 +117,11 @@ site: browser pages ## Build the documentation, and test replays and reports in 
 
 # Both are linked against a C library that old machines have.
 WHEEL_TARGET = $(shell rustc -vV | sed -n 's/^host: //p')
+
+# No path of the machine that builds is in what ships.
+CARGO_FOLDER = $(or $(CARGO_HOME),$(HOME)/.cargo)
+wheels: export RUSTFLAGS := --remap-path-prefix=$(CURDIR)=chaindrive --remap-path-prefix=$(CARGO_FOLDER)=cargo
+wheels: export CFLAGS := -ffile-prefix-map=$(CARGO_FOLDER)=cargo
 
 wheels: $(VENV)/wheels-ready ## Build a wheel for Linux and the source distribution in dist, and try them
 	rm -rf dist

@@ -28,19 +28,26 @@ def _draw(arguments: list[str], source: str, output: str, frames: int | None, *h
     """Make what matplotlib and imageio make, and the core does not."""
     from pathlib import Path
 
+    from chaindrive.errors import WriteError
+
     overwrite, quiet = how
-    if arguments[1] == "report":
-        from chaindrive import reporting
+    try:
+        # Before packages are imported that take seconds.
+        place = _core.NewFile(output, overwrite)
+        if arguments[1] == "report":
+            from chaindrive import reporting
 
-        return reporting.command(source, Path(output), overwrite=overwrite, quiet=quiet)
-    if arguments[1] == "bench":
-        from chaindrive import bench
+            return reporting.command(source, Path(output), place, quiet=quiet)
+        if arguments[1] == "bench":
+            from chaindrive import bench
 
-        files = Path(source), Path(output)
-        return bench.command(lambda: _core._cli(arguments), *files, overwrite=overwrite)
-    from chaindrive import movies
+            return bench.command(lambda: _core._cli(arguments), Path(source), Path(output), place)
+        from chaindrive import movies
 
-    return movies.command(source, Path(output), frames=frames, overwrite=overwrite, quiet=quiet)
+        return movies.command(source, Path(output), place, frames=frames, quiet=quiet)
+    except WriteError as error:
+        print(error, file=sys.stderr)
+        return 3
 
 
 def _run(arguments: list[str]) -> int:

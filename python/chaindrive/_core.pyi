@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
+from pathlib import Path
+from types import TracebackType
 from typing import Any, ClassVar, Final, TypeAlias, final
 
 import numpy as np
@@ -15,6 +17,7 @@ __all__ = [
     "Figure",
     "Friction",
     "Law",
+    "NewFile",
     "Profile",
     "Simulation",
     "Snapshot",
@@ -132,6 +135,19 @@ class Friction:
     def to_json(self) -> str: ...
     def act(self, normal: _Floats, slip: _Floats) -> list[_Floats]: ...
     def rub(self, normal: _Floats, slip: _Floats, state: _Floats, dt: _Floats) -> list[_Floats]: ...
+
+@final
+class NewFile:
+    def __new__(cls, path: str | PathLike[str], overwrite: bool = True) -> NewFile: ...
+    def write(self, content: bytes) -> None: ...
+    def __enter__(self) -> Path: ...
+    def __exit__(
+        self,
+        _kind: type[BaseException] | None,
+        _raised: BaseException | None,
+        _traceback: TracebackType | None,
+        /,
+    ) -> None: ...
 
 @final
 class Law:
@@ -272,8 +288,9 @@ def fmu(
     version: int,
     run: bool,
     library: str | PathLike[str],
+    overwrite: bool,
     progress: Callable[[float], object] | None,
-) -> int: ...
+) -> None: ...
 def fmu_library() -> str: ...
 def resume(
     path: str | PathLike[str],

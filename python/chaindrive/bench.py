@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -10,31 +11,29 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from chaindrive._core import NewFile
 from chaindrive.extras import extra
 
 __all__ = ["command"]
 
 
-def command(run: Callable[[], int], table: Path, picture: Path, *, overwrite: bool) -> int:
+def command(run: Callable[[], int], table: Path, picture: Path, place: NewFile) -> int:
     """Run the command, which writes its table, draw that, and return the exit code."""
-    if picture.exists() and not overwrite:
-        hint = "choose another name, or pass --overwrite"
-        print(f"{picture}: there is already a file here; {hint}", file=sys.stderr)
-        return 3
-    code = run()
-    if code:
-        return code
     try:
         pyplot = extra("matplotlib.pyplot", "diagrams")
     except ModuleNotFoundError as error:
-        # The table is there.
-        print(f"{picture}: not drawn, {error}", file=sys.stderr)
-        return 0
+        print(f"{picture}: will not be drawn, {error}", file=sys.stderr)
+        return run()
+    code = run()
+    if code:
+        return code
     from chaindrive.plot import work_precision
 
     pyplot.switch_backend("svg")
     work_precision(_read(table))
-    pyplot.savefig(picture)
+    drawn = io.BytesIO()
+    pyplot.savefig(drawn)
+    place.write(drawn.getvalue())
     return 0
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from chaindrive import _core
-from chaindrive.errors import ParameterError, WriteError
+from chaindrive.errors import ParameterError
 
 if TYPE_CHECKING:
     from chaindrive.drive import Drive
@@ -91,9 +91,6 @@ def export(
     if target.suffix != ".fmu":
         message = f"{target}: the name must end in .fmu"
         raise ParameterError(message, "path", "such as drive.fmu")
-    if target.exists() and not overwrite:
-        message = f"{target}: there is already a file here"
-        raise WriteError(message, target, "give `overwrite=True`, or another name")
     settings: dict[str, Any] = {
         "record": [record] if isinstance(record, str) else record,
         "until": until,
@@ -113,6 +110,7 @@ def export(
         version=fmi,
         run=run,
         library=LIBRARY if library is None else library,
+        overwrite=overwrite,
         progress=progress,
     )
     return target

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from chaindrive._core import NewFile
+from chaindrive.errors import WriteError
 from chaindrive.extras import extra
 from chaindrive.plot.scheme import CARRIER, GUIDE, OUTLINE, PLATES, STEEL
 from chaindrive.plot.units import in_trade, written
@@ -79,8 +81,17 @@ def movie(
         The name ends in something else, or the store of the run is damaged.
     ModuleNotFoundError
         The extra ``movie`` is not installed.
+    WriteError
+        The file cannot be written; what was in its place is still there.
     """
     place = Path(fspath(path))
+    _check(place, frames)
+    _write(run, NewFile(place), place.suffix, frames, rate, size, progress)
+    return place
+
+
+def _check(place: Path, frames: int) -> None:
+    """Refuse what is no movie, and tell what is missing for one."""
     if frames < 1:
         raise ValueError(f"frames = {frames}, must be 1 or more")
     if place.suffix not in (".mp4", ".gif"):
@@ -88,12 +99,23 @@ def movie(
     extra("imageio.v2", "movies")
     if place.suffix == ".mp4":
         extra("imageio_ffmpeg", "movies in .mp4")
+
+
+def _write(
+    run: xr.Dataset,
+    place: NewFile,
+    suffix: str,
+    frames: int,
+    rate: float = RATE,
+    size: tuple[int, int] = SIZE,
+    progress: bool | Callable[[float], object] = False,
+) -> None:
     samples = np.unique(np.linspace(0, run.sizes["time"] - 1, frames).round().astype(int))
     stage = _Stage(run, samples, size)
     with told(progress, "movie") as tell:
-        write = _mp4 if place.suffix == ".mp4" else _gif
-        write(stage.pictures(tell), place, rate)
-    return place
+        write = _mp4 if suffix == ".mp4" else _gif
+        with place as part:
+            write(stage.pictures(tell), part, rate)
 
 
 def _mp4(pictures: Iterator[NDArray[np.uint8]], place: Path, rate: float) -> None:
@@ -101,8 +123,17 @@ def _mp4(pictures: Iterator[NDArray[np.uint8]], place: Path, rate: float) -> Non
     how: dict[str, Any] = {"codec": "libx264", "quality": None}
     how["output_params"] = ["-preset", "ultrafast", "-crf", "18"]
     with extra("imageio.v2", "movies").get_writer(place, fps=rate, **how) as writer:
+        count = 0
         for picture in pictures:
             writer.append_data(picture)
+            count += 1
+    # The encoder is another process, and does not tell that the disk was full.
+    try:
+        found, _ = extra("imageio_ffmpeg", "movies in .mp4").count_frames_and_secs(place)
+    except RuntimeError:
+        found = 0
+    if found != count:
+        raise OSError(f"the encoder wrote {found} of {count} pictures: is the disk full?")
 
 
 def _gif(pictures: Iterator[NDArray[np.uint8]], place: Path, rate: float) -> None:
@@ -294,17 +325,17 @@ def _line(share: float) -> None:
     print(f"\r{text}", end="", file=sys.stderr, flush=True)
 
 
-def command(source: str, output: Path, *, frames: int | None, overwrite: bool, quiet: bool) -> int:
+def command(source: str, output: Path, place: NewFile, *, frames: int | None, quiet: bool) -> int:
     """Make the movie that a command line asks for, and return the exit code."""
     from chaindrive.results import open_result
 
-    if output.exists() and not overwrite:
-        print(f"{output}: there is already something here; pass --overwrite", file=sys.stderr)
-        return 3
     shown = _line if sys.stderr.isatty() and not quiet else False
     try:
-        run = open_result(source)
-        movie(run, output, frames=PICTURES if frames is None else frames, progress=shown)
+        number = PICTURES if frames is None else frames
+        _check(output, number)
+        _write(open_result(source), place, output.suffix, number, progress=shown)
+    except WriteError:
+        raise
     except (KeyError, ValueError, FileNotFoundError, ModuleNotFoundError) as error:
         message = error.args[0] if isinstance(error, KeyError) else error
         print(f"{source}: {message}", file=sys.stderr)

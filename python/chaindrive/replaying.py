@@ -37,9 +37,8 @@ class Replay:
 
     def save(self, path: str | PathLike[str]) -> Path:
         """Write the page to a file, in place of what was there, and return its path."""
-        place = Path(path)
-        place.write_text(self.html, encoding="utf-8")
-        return place
+        _core.NewFile(path).write(self.html.encode())
+        return Path(path)
 
     def _repr_html_(self) -> str:
         # The page lives in a frame of its own: neither its style nor its names meet the notebook's.
@@ -112,6 +111,8 @@ def replay(
         The channels that the motion takes were not recorded; the message names them.
     ValueError
         The path ends in something else, the run holds no samples, or its store is damaged.
+    WriteError
+        The file cannot be written; what was in its place is still there.
 
     Examples
     --------
@@ -128,11 +129,12 @@ def replay(
         return movie(run, path, frames=PICTURES if frames is None else frames)
     if suffix not in (".html", ".htm"):
         raise ValueError(f"{path!s}: the name must end in .html, .mp4 or .gif")
+    place = None if path is None else _core.NewFile(path)
     page = Replay(
         _page(run, None if plot is None else list(plot), _FRAMES if frames is None else frames)
     )
-    if path is not None:
-        page.save(path)
+    if place is not None:
+        place.write(page.html.encode())
     return page
 
 

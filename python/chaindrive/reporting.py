@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
+from chaindrive._core import NewFile
 from chaindrive.drive import Drive, load
-from chaindrive.errors import ChaindriveError
+from chaindrive.errors import ChaindriveError, WriteError
 from chaindrive.extras import extra
 from chaindrive.front_page import front_page
 from chaindrive.page import page_of, section, table
@@ -63,12 +64,20 @@ def report(
         The drive cannot be read or simulated.
     ValueError
         The run has not ended, or an older version made it.
+    WriteError
+        The file cannot be written; what was in its place is still there.
     """
-    run = _run(source)
-    text = _document(run)
-    if path is not None:
-        Path(path).write_text(text, encoding="utf-8")
+    place = None if path is None else NewFile(path)
+    text = _report(source)
+    if place is not None:
+        place.write(text.encode())
     return text
+
+
+def _report(source: Drive | xr.Dataset | str | PathLike[str]) -> str:
+    # Missed before anything is simulated.
+    extra("matplotlib.pyplot", "plots")
+    return _document(_run(source))
 
 
 def _run(source: Drive | xr.Dataset | str | PathLike[str]) -> xr.Dataset:
@@ -220,22 +229,21 @@ def _replay(run: xr.Dataset) -> str:
     )
 
 
-def command(source: str, output: Path, *, overwrite: bool, quiet: bool) -> int:
+def command(source: str, output: Path, place: NewFile, *, quiet: bool) -> int:
     """Make the report that a command line asks for, and return the exit code."""
     if output.suffix not in (".html", ".htm"):
         print(f"{output}: the name must end in .html", file=sys.stderr)
         return 2
-    if output.exists() and not overwrite:
-        print(f"{output}: there is already something here; pass --overwrite", file=sys.stderr)
-        return 3
     try:
-        text = report(_named(source))
-        output.write_text(text, encoding="utf-8")
+        text = _report(_named(source)).encode()
+        place.write(text)
+    except WriteError:
+        raise
     except (ChaindriveError, ValueError, OSError, ModuleNotFoundError) as error:
         print(f"{source}: {error}", file=sys.stderr)
         return 2
     if not quiet:
-        print(f"{output}: {len(text.encode()) / 1e6:.2f} MB", file=sys.stderr)
+        print(f"{output}: {len(text) / 1e6:.2f} MB", file=sys.stderr)
     return 0
 
 

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import venv
+import zipfile
 from pathlib import Path
 
 SCRIPT = """
@@ -36,10 +37,26 @@ def newest(folder: Path) -> Path:
     return wheels[-1]
 
 
+def traces(wheel: Path) -> list[str]:
+    """Return files of a wheel that name a folder of this machine, where it was built."""
+    here = Path(__file__).resolve().parent.parent.parent
+    cargo = os.environ.get("CARGO_HOME", Path.home() / ".cargo")
+    folders = [str(folder).encode() for folder in (here, cargo)]
+    with zipfile.ZipFile(wheel) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    return [name for name, held in files.items() if any(it in held for it in folders)]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description="Try a wheel in a fresh environment.")
     parser.add_argument("folder", type=Path, help="folder with the wheel")
     wheel = newest(parser.parse_args().folder).resolve()
+    # Elsewhere nobody has tried it.
+    if sys.platform == "linux" and (found := traces(wheel)):
+        sys.exit(f"{wheel.name}: paths of this machine are in {', '.join(found)}")
+    with zipfile.ZipFile(wheel) as archive:
+        if not any(name.endswith("third-party.txt") for name in archive.namelist()):
+            sys.exit(f"{wheel.name} has no licences of the libraries in it")
     with tempfile.TemporaryDirectory() as name:
         place = Path(name)
         venv.create(place / "env", with_pip=True)

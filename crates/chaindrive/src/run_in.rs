@@ -230,6 +230,49 @@ pub(crate) fn bounds(start: &Assembled, run: &Run) -> Result<[f64; 2], Simulatio
     }
 }
 
+/// Finds out before a drive is assembled whether it has the sprocket whose turns its run-in counts.
+///
+/// # Errors
+/// [`SimulationError::RunIn`].
+pub(crate) fn check_sprocket(drive: &Drive, run: &Run) -> Result<(), SimulationError> {
+    let RunIn::Turns { sprocket, .. } = &run.run_in else {
+        return Ok(());
+    };
+    let sprockets = drive.parts().sprockets.iter();
+    let names: Vec<String> = sprockets.map(|it| it.name.clone()).collect();
+    number_of(&names, sprocket.as_deref()).map(drop)
+}
+
+/// Number of the sprocket whose turns are counted.
+fn number_of(names: &[String], sprocket: Option<&str>) -> Result<usize, SimulationError> {
+    let index = match sprocket {
+        Some(name) => names.iter().position(|known| known == name),
+        None => (!names.is_empty()).then_some(0),
+    };
+    index.ok_or_else(|| {
+        let wanted = sprocket.unwrap_or("a sprocket");
+        let known = match names.len() {
+            0 => "the drive has none: give a time".to_owned(),
+            _ => format!("there are {}", names.join(", ")),
+        };
+        let reason = format!("turns of {wanted}: {known}");
+        SimulationError::RunIn { reason }
+    })
+}
+
+/// Finds out before method and step are chosen whether that sprocket turns.
+///
+/// # Errors
+/// [`SimulationError::RunIn`].
+pub(crate) fn check_turns(start: &Assembled, run: &Run) -> Result<(), SimulationError> {
+    match &run.run_in {
+        RunIn::Turns { turns, sprocket } => {
+            turns_last(start, *turns, sprocket.as_deref()).map(drop)
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Time \[s\] that a sprocket takes for some turns at its mean speed.
 fn turns_last(
     start: &Assembled,
@@ -237,19 +280,7 @@ fn turns_last(
     sprocket: Option<&str>,
 ) -> Result<f64, SimulationError> {
     let names = start.system.sprocket_names();
-    let refuse = |reason: String| SimulationError::RunIn { reason };
-    let index = match sprocket {
-        Some(name) => names.iter().position(|known| known == name),
-        None => (!names.is_empty()).then_some(0),
-    };
-    let Some(index) = index else {
-        let wanted = sprocket.unwrap_or("a sprocket");
-        let known = match names.len() {
-            0 => "the drive has none: give a time".to_owned(),
-            _ => format!("there are {}", names.join(", ")),
-        };
-        return Err(refuse(format!("turns of {wanted}: {known}")));
-    };
+    let index = number_of(&names, sprocket)?;
     let speed = start.mean_speeds()[index].abs();
     // t = n 2π/ω
     let time = turns * TAU / speed;
@@ -257,8 +288,9 @@ fn turns_last(
         Ok(time)
     } else {
         let name = &names[index];
-        Err(refuse(format!(
+        let reason = format!(
             "`{name}` turns at {speed} rad/s in the mean: give a time, or turns of a sprocket that turns"
-        )))
+        );
+        Err(SimulationError::RunIn { reason })
     }
 }

@@ -44,6 +44,13 @@ pub enum Existing {
     Replace,
 }
 
+impl Existing {
+    /// Replaced where somebody asked for that.
+    pub fn overwriting(overwrite: bool) -> Self {
+        if overwrite { Self::Replace } else { Self::Keep }
+    }
+}
+
 /// Attributes of an array: its unit, and its name in words.
 pub(crate) fn about(unit: &str, text: &str) -> Map<String, Value> {
     let entries = [(unit_attribute(unit), unit), ("long_name", text)];

@@ -35,19 +35,33 @@ pub(crate) struct CsvWriter {
     contact: EventTable,
 }
 
+/// Claims of both places of a run, before its work begins.
+#[derive(Debug)]
+pub(crate) struct RunClaims {
+    samples: TableClaim,
+    contacts: TableClaim,
+}
+
+impl RunClaims {
+    /// Claims the place of the samples, and that of the contacts beside it.
+    pub(crate) fn take(path: &Path, existing: Existing) -> Result<Self, Failure> {
+        Ok(Self {
+            samples: claim(path, existing)?,
+            contacts: claim(&path.with_extension("events.csv"), existing)?,
+        })
+    }
+}
+
 impl CsvWriter {
     /// Opens the files and writes their headings.
     pub(crate) fn create(
-        path: &Path,
+        claims: RunClaims,
         simulation: &Simulation,
         channels: &[Channel],
         events: EventKinds,
-        existing: Existing,
     ) -> Result<Self, Failure> {
-        let beside = path.with_extension("events.csv");
-        let samples = claim(path, existing)?;
+        let RunClaims { samples, contacts } = claims;
         // Contacts of an earlier run do not stay beside the samples of this one.
-        let contacts = claim(&beside, existing)?;
         let contacts = if events == EventKinds::default() {
             contacts.remove()?;
             None
@@ -324,6 +338,16 @@ pub(crate) fn claim(path: &Path, existing: Existing) -> Result<TableClaim, Failu
         found,
         hint,
     };
+    // As every verb does it: folders that are missing are made, links are refused.
+    if path.is_symlink() {
+        return Err(taken(
+            "there is a symbolic link here, which is neither followed nor replaced",
+            "",
+        ));
+    }
+    if let Some(folder) = path.parent().filter(|it| !it.exists()) {
+        fs::create_dir_all(folder).map_err(|source| failed(path, source))?;
+    }
     let claimed = TableClaim {
         claim: Claim::take(path)?,
         path: path.to_owned(),

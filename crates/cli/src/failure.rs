@@ -98,7 +98,13 @@ impl From<Infallible> for Failure {
 fn remedy(error: &std::io::Error) -> &'static str {
     match error.kind() {
         ErrorKind::NotFound => "; make the folder first, or choose another",
-        ErrorKind::PermissionDenied => "; choose a place where you may write",
+        ErrorKind::NotADirectory => "; choose a place in a folder",
+        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+            "; choose a place where you may write"
+        }
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            "; make room, or choose another place"
+        }
         _ => "",
     }
 }

@@ -1,7 +1,7 @@
 //! A chain drive as a part of another simulation.
 //!
 //! A [`Model`] is a drive at the start of its run with a list of [`Variable`]s; an [`Instance`] moves it from one communication point to the
-//! next. [`write()`] makes a functional mock-up unit (FMU) for co-simulation of it, after FMI 2.0 and 3.0, which the library of the crate
+//! next. [`package()`] makes a functional mock-up unit (FMU) for co-simulation of it, after FMI 2.0 and 3.0, which the library of the crate
 //! `chaindrive-fmu` carries out.
 //!
 //! | part | idea |
@@ -10,7 +10,7 @@
 //! | [`Instance`] | phases, values, steps, saved states |
 //! | `signal` | an input between two communication points, and what of its work has not arrived |
 //! | `description` | `modelDescription.xml` of both versions |
-//! | [`package`] | the archive |
+//! | [`package`](package()) | the archive |
 
 mod description;
 mod export;
@@ -27,5 +27,5 @@ pub use export::{Export, Facts, LIBRARY, ResourceError, RunFacts};
 pub use fault::Fault;
 pub use instance::{Instance, Phase, SavedInstance};
 pub use model::{Model, ModelError};
-pub use package::{PackageError, package, platform, write};
+pub use package::{PackageError, package, platform, read_library};
 pub use variable::{Causality, Choices, Kind, Variable};

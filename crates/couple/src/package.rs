@@ -12,6 +12,9 @@ use crate::description::Standard;
 use crate::export::LIBRARY;
 use crate::model::Model;
 
+/// Licences of the libraries within that of units: `make licences`.
+const THIRD_PARTY: &str = include_str!("../third-party.txt");
+
 /// Why a unit was not written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -32,15 +35,6 @@ pub enum PackageError {
     /// The archive cannot be made.
     #[error("the archive cannot be made: {0}")]
     Bytes(#[from] std::io::Error),
-
-    /// The file cannot be written.
-    #[error("{}: {source}", .path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// Why it cannot be written.
-        source: std::io::Error,
-    },
 }
 
 /// Folder of libraries of a platform in a unit, such as `linux64` or `x86_64-linux`, and the ending of their names.
@@ -68,17 +62,24 @@ pub fn platform(standard: Standard) -> (String, &'static str) {
     (folder, std::env::consts::DLL_SUFFIX)
 }
 
+/// The library of units, as bytes.
+///
+/// # Errors
+/// [`PackageError::Library`].
+pub fn read_library(path: &Path) -> Result<Vec<u8>, PackageError> {
+    fs::read(path).map_err(|source| PackageError::Library {
+        path: path.to_owned(),
+        source,
+    })
+}
+
 /// A unit of a model as the bytes of its archive, with the library of this platform.
 ///
 /// The same model and library give the same bytes.
 ///
 /// # Errors
-/// [`PackageError`]: the library cannot be read.
-pub fn package(model: &Model, standard: Standard, library: &Path) -> Result<Vec<u8>, PackageError> {
-    let code = fs::read(library).map_err(|source| PackageError::Library {
-        path: library.to_owned(),
-        source,
-    })?;
+/// [`PackageError`]: the archive cannot be made.
+pub fn package(model: &Model, standard: Standard, library: &[u8]) -> Result<Vec<u8>, PackageError> {
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
         .last_modified_time(zip::DateTime::default());
@@ -93,31 +94,16 @@ pub fn package(model: &Model, standard: Standard, library: &Path) -> Result<Vec<
     let (folder, ending) = platform(standard);
     file(
         &format!("binaries/{folder}/{LIBRARY}{ending}"),
-        &code,
+        library,
         0o755,
+    )?;
+    file(
+        "documentation/licenses/third-party.txt",
+        THIRD_PARTY.as_bytes(),
+        0o644,
     )?;
     for (name, text) in model.resources() {
         file(&format!("resources/{name}"), text.as_bytes(), 0o644)?;
     }
     Ok(archive.finish()?.into_inner())
-}
-
-/// Writes a unit to a file, and returns its size in bytes. Whoever reads the file finds the old one or the new one, whole.
-///
-/// # Errors
-/// As [`package`], and [`PackageError::File`].
-pub fn write(
-    model: &Model,
-    standard: Standard,
-    library: &Path,
-    path: &Path,
-) -> Result<usize, PackageError> {
-    let unit = package(model, standard, library)?;
-    let part = path.with_extension("fmu.part");
-    let written = fs::write(&part, &unit).and_then(|()| fs::rename(&part, path));
-    written.map_err(|source| PackageError::File {
-        path: path.to_owned(),
-        source,
-    })?;
-    Ok(unit.len())
 }

@@ -10,7 +10,7 @@ use std::ptr::{null, null_mut, without_provenance_mut};
 use std::sync::Arc;
 
 use chaindrive::{Request, Scene, Settings};
-use chaindrive_couple::{Export, Model, Standard, package};
+use chaindrive_couple::{Export, Model, Standard, package, read_library};
 
 use crate::units::Handle;
 use crate::{calls, fmi2, fmi3};
@@ -364,14 +364,14 @@ fn a_unit_is_an_archive_of_its_parts() {
     let scene = Scene::preset("spinning_ring").expect("a preset");
     let request = Request::new(&scene, &Settings::default()).expect("a request");
     let model = Model::new(Export::new(&request, "ring")).expect("a model");
-    let library = Path::new(env!("CARGO_MANIFEST_PATH"));
+    let library = read_library(Path::new(env!("CARGO_MANIFEST_PATH"))).expect("a file");
     for standard in [Standard::Two, Standard::Three] {
-        let unit = package(&model, standard, library).expect("an archive");
+        let unit = package(&model, standard, &library).expect("an archive");
         assert_eq!(unit[..4], *b"PK\x03\x04");
         assert_eq!(
             unit,
-            package(&model, standard, library).expect("an archive")
+            package(&model, standard, &library).expect("an archive")
         );
     }
-    package(&model, Standard::Two, Path::new("none")).expect_err("no library is there");
+    read_library(Path::new("none")).expect_err("no library is there");
 }

@@ -1,5 +1,7 @@
 //! Errors of the library as exceptions of `chaindrive.errors`.
 
+use std::path::Path;
+
 use chaindrive::record::{ReadError, ResumeError, WriteError};
 use chaindrive::scene::SceneError;
 use chaindrive::sweep::SweepError;
@@ -9,12 +11,13 @@ use chaindrive_couple::{ModelError, PackageError};
 use chaindrive_geometry::GeometryError;
 use chaindrive_integrate::IntegrationError;
 use chaindrive_mechanics::AssemblyError;
-use pyo3::PyErr;
 use pyo3::exceptions::{PyFileNotFoundError, PyValueError};
+use pyo3::{PyErr, Python};
 
 /// The exception classes; their rust names would clash with those of the errors.
 mod python {
     pyo3::import_exception!(chaindrive.errors, AssemblyError);
+    pyo3::import_exception!(chaindrive.errors, ChaindriveError);
     pyo3::import_exception!(chaindrive.errors, IntegrationError);
     pyo3::import_exception!(chaindrive.errors, ParameterError);
     pyo3::import_exception!(chaindrive.errors, ResumeError);
@@ -286,7 +289,7 @@ impl IntoException for WriteError {
     fn exception(self) -> PyErr {
         let message = self.to_string();
         match self {
-            Self::Exists { path } => python::WriteError::new_err((
+            Self::Exists { path } | Self::FileExists { path } => python::WriteError::new_err((
                 message,
                 path,
                 "give `overwrite=True`, or another name",
@@ -339,10 +342,19 @@ impl IntoException for PackageError {
                 "library",
                 "must be the library of units of this build",
             )),
-            Self::File { path, .. } => python::WriteError::new_err((message, path)),
             _ => python::WriteError::new_err((message,)),
         }
     }
+}
+
+/// Whether an exception is one of `chaindrive.errors`.
+pub(crate) fn is_ours(py: Python<'_>, raised: &PyErr) -> bool {
+    raised.is_instance_of::<python::ChaindriveError>(py)
+}
+
+/// A `WriteError` of a place, for what a library of others said.
+pub(crate) fn refused(path: &Path, reason: &str) -> PyErr {
+    python::WriteError::new_err((format!("{}: {reason}", path.display()), path.to_owned()))
 }
 
 /// A `ParameterError` that names the parameter and what it may be.

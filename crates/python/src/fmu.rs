@@ -3,8 +3,9 @@
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::PathBuf;
 
-use chaindrive::Request;
-use chaindrive_couple::{Export, LIBRARY, Model, Standard, write};
+use chaindrive::record::Existing;
+use chaindrive::{NewFile, Request};
+use chaindrive_couple::{Export, LIBRARY, Model, Standard, package, read_library};
 use pyo3::prelude::*;
 
 use crate::drive::Drive;
@@ -14,7 +15,7 @@ use crate::signals::Interpreter;
 
 /// Writes a unit of a drive; Ctrl-C leaves what was there.
 #[pyfunction]
-#[pyo3(signature = (drive, settings, *, path, name, version, run, library, progress))]
+#[pyo3(signature = (drive, settings, *, path, name, version, run, library, overwrite, progress))]
 #[expect(clippy::too_many_arguments, reason = "Python names them")]
 pub(crate) fn fmu(
     py: Python<'_>,
@@ -25,13 +26,16 @@ pub(crate) fn fmu(
     version: u32,
     run: bool,
     library: PathBuf,
+    overwrite: bool,
     progress: Option<Py<PyAny>>,
-) -> PyResult<usize> {
+) -> PyResult<()> {
     let standard = Standard::of(version).ok_or_else(|| {
         let message = format!("FMI {version}: there are 2 and 3");
         parameter(message, "fmi", "2 or 3")
     })?;
     let request = Request::new(&drive.scene, &merged(settings)).or_raise()?;
+    let place = NewFile::at(&path, Existing::overwriting(overwrite)).or_raise()?;
+    let library = read_library(&library).or_raise()?;
     let mut export = Export::new(&request, name);
     let (written, raised) = py.detach(|| {
         let interpreter = Interpreter::new(progress.as_ref());
@@ -42,8 +46,9 @@ pub(crate) fn fmu(
         };
         let written = told.map_err(IntoException::exception).and_then(|()| {
             let model = Model::new(export).map_err(IntoException::exception)?;
-            let written = write(&model, standard, &library, &path);
-            written.map_err(IntoException::exception)
+            let unit = package(&model, standard, &library);
+            let unit = unit.map_err(IntoException::exception)?;
+            place.write(&unit).map_err(IntoException::exception)
         });
         (written, interpreter.raised.into_inner())
     });

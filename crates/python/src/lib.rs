@@ -18,6 +18,7 @@ mod friction;
 mod kinematics;
 mod law;
 mod live;
+mod new_file;
 mod precision;
 mod profile;
 mod replay;
@@ -58,6 +59,8 @@ mod core {
     use crate::law::Law;
     #[pymodule_export]
     use crate::live::{Simulation, Snapshot, View, step_many};
+    #[pymodule_export]
+    use crate::new_file::NewFile;
     #[pymodule_export]
     use crate::precision::work_precision;
     #[pymodule_export]

@@ -46,11 +46,7 @@ pub(crate) fn simulate<'py>(
         let report = match output {
             None => execute(&request, &mut memory, &interpreter).map_err(IntoException::exception),
             Some(path) => {
-                let existing = if overwrite {
-                    Existing::Replace
-                } else {
-                    Existing::Keep
-                };
+                let existing = Existing::overwriting(overwrite);
                 let mut store = ZarrSink::new(path, existing);
                 execute(&request, &mut store, &interpreter).map_err(IntoException::exception)
             }

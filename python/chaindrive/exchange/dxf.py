@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from chaindrive._core import NewFile
 from chaindrive.errors import ParameterError
 from chaindrive.exchange.biarcs import biarcs
 from chaindrive.exchange.curve import Curve, joined
@@ -122,8 +123,11 @@ def write_dxf(path: str | PathLike[str], what: Outlined, *, settled: bool = True
     ------
     AssemblyError
         The drive does not close or settle.
+    WriteError
+        The file cannot be written.
     """
     ezdxf = extra("ezdxf", _WHAT)
+    place = NewFile(path)
     drawing = ezdxf.new("R2010", units=ezdxf.units.MM)
     space = drawing.modelspace()
     for curve in outlines(what, settled=settled):
@@ -135,7 +139,8 @@ def write_dxf(path: str | PathLike[str], what: Outlined, *, settled: bool = True
         space.add_lwpolyline(
             corners.tolist(), format="xyb", close=curve.closed, dxfattribs={"layer": layer}
         )
-    drawing.saveas(fspath(path))
+    with place as part:
+        drawing.saveas(part)
 
 
 def _metre(declared: int, unit: str | None) -> float:

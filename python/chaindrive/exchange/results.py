@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from chaindrive._core import NewFile
 from chaindrive.errors import ParameterError
 from chaindrive.extras import extra
 
@@ -45,6 +46,8 @@ def save(run: xr.Dataset, path: str | PathLike[str]) -> list[Path]:
     ------
     ParameterError
         The name ends otherwise, or the dataset has no samples over time for a table.
+    WriteError
+        A file cannot be written; what was in its place is still there.
 
     Examples
     --------
@@ -62,7 +65,9 @@ def save(run: xr.Dataset, path: str | PathLike[str]) -> list[Path]:
     if file.suffix == ".nc":
         for package in ("h5netcdf", "h5py"):
             extra(package, "results in NetCDF")
-        run.to_netcdf(file, engine="h5netcdf")
+        with NewFile(file) as part:
+            # Made in memory: on a full disk HDF5 ends the whole process.
+            part.write_bytes(run.to_netcdf(engine="h5netcdf"))
         return [file]
     if file.suffix not in (".csv", ".parquet"):
         hint = "a Zarr store is written by `simulate(…, output=…)`"
@@ -71,13 +76,15 @@ def save(run: xr.Dataset, path: str | PathLike[str]) -> list[Path]:
         message = "the dataset is no table: it has no samples over time, or more than one run"
         raise ParameterError(message, "run", "select one run, or write NetCDF")
     write = _write_csv if file.suffix == ".csv" else _write_parquet
-    written = [file]
-    write(file, _columns(run, "time"), run.attrs)
+    tables = {"time": file}
     if "event" in run.dims:
-        events = file.with_suffix(f".events{file.suffix}")
-        write(events, _columns(run, "event"), run.attrs)
-        written.append(events)
-    return written
+        tables["event"] = file.with_suffix(f".events{file.suffix}")
+    # Both places are found fit before one is written.
+    places = [(NewFile(table), of) for of, table in tables.items()]
+    for place, of in places:
+        with place as part:
+            write(part, _columns(run, of), run.attrs)
+    return list(tables.values())
 
 
 # A column: its heading, its values, and what is to be known about it.

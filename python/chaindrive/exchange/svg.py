@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from os import PathLike
-from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from chaindrive._core import NewFile
 from chaindrive.exchange.curve import Curve
 from chaindrive.exchange.outlines import Outlined, outlines
 
@@ -35,7 +35,10 @@ def write_svg(path: str | PathLike[str], what: Outlined, *, settled: bool = True
     ------
     AssemblyError
         The drive does not close or settle.
+    WriteError
+        The file cannot be written.
     """
+    place = NewFile(path)
     curves = outlines(what, settled=settled)
     corners = np.concatenate([curve.outline(1e-4) for curve in curves]) * _PER_METRE
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -51,7 +54,7 @@ def write_svg(path: str | PathLike[str], what: Outlined, *, settled: bool = True
         drawn = [_path(curve) for curve in curves if curve.layer == layer]
         lines += [f"<g id={quoteattr(layer)}>", *drawn, "</g>"]
     lines += ["</g>", "</svg>", ""]
-    Path(path).write_text("\n".join(lines), encoding="utf-8")
+    place.write("\n".join(lines).encode())
 
 
 def _path(curve: Curve) -> str:

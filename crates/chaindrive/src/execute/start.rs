@@ -13,9 +13,9 @@ use super::RunError;
 use crate::interruptible::assemble;
 use crate::precision::{Choice, Estimate, ShortRuns, choose_with, estimate};
 use crate::record::Provenance;
-use crate::run_in::{Onlooker, RecordStart, record_start};
+use crate::run_in::{Onlooker, RecordStart, check_sprocket, check_turns, record_start};
 use crate::summary::Summary;
-use crate::{Request, RunIn, Simulation, SimulationError};
+use crate::{Channel, Request, RunIn, Simulation, SimulationError};
 
 /// A drive as it was assembled, with the method and step of its run.
 pub(super) struct Setup {
@@ -83,7 +83,11 @@ impl Setup {
         let mut provenance = Provenance::of(&request.scene, &request.run);
         provenance.checkpoint_every = request.checkpoint_every;
         let drive = request.scene.drive().map_err(RunError::Scene)?;
+        // Names that the drive does not have are told before anything is simulated.
+        check_sprocket(&drive, &request.run).map_err(RunError::Start)?;
         let assembled = assemble(&drive, watch).map_err(not_started)?;
+        check_turns(&assembled, &request.run).map_err(RunError::Start)?;
+        Channel::chosen(&request.record, &assembled.system).map_err(RunError::Start)?;
         let mut short_runs = ShortRuns::default();
         if let Some(accuracy) = request.accuracy {
             let choice = if let Some(known) = known {

@@ -366,7 +366,7 @@ fn is_own(beside: &Path) -> Result<(), Refusal> {
 
 /// Exchanges two names in one move; tells whether the system can.
 #[cfg(any(target_os = "linux", target_vendor = "apple"))]
-fn exchanged(one: &Path, other: &Path) -> io::Result<bool> {
+pub(super) fn exchanged(one: &Path, other: &Path) -> io::Result<bool> {
     use rustix::fs::{CWD, RenameFlags, renameat_with};
     use rustix::io::Errno;
     match renameat_with(CWD, one, CWD, other, RenameFlags::EXCHANGE) {
@@ -377,6 +377,6 @@ fn exchanged(one: &Path, other: &Path) -> io::Result<bool> {
 }
 
 #[cfg(not(any(target_os = "linux", target_vendor = "apple")))]
-fn exchanged(_: &Path, _: &Path) -> io::Result<bool> {
+pub(super) fn exchanged(_: &Path, _: &Path) -> io::Result<bool> {
     Ok(false)
 }

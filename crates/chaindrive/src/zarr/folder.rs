@@ -13,6 +13,7 @@ use rayon::ThreadPool;
 use same_file::Handle;
 use zarrs::storage::{Bytes, StorageError, StoreKey};
 
+use super::claim::exchanged;
 use super::fault::Fault;
 use super::files::{Change, Files};
 use super::inspect::read_file;
@@ -133,7 +134,8 @@ impl Folder {
         let path = state.root.join(key.as_str());
         let staged = format!("{key}{STAGED}{}", std::process::id());
         let staged = state.root.join(staged);
-        let written = fs::write(&staged, value).and_then(|()| fs::rename(&staged, &path));
+        let known = state.files.contains(key);
+        let written = fs::write(&staged, value).and_then(|()| put(&staged, &path, known));
         if written.is_err() {
             // Of the two errors the first says more.
             let _ = fs::remove_file(&staged);
@@ -144,6 +146,17 @@ impl Folder {
         }
         Ok(())
     }
+}
+
+/// Puts a file in place, of which a reader finds the old one or the new one.
+///
+/// A file that is `known` to be there is exchanged and then removed: a move onto it would have some file systems (ext4) write the new one out
+/// at once, at every checkpoint once for every array.
+fn put(staged: &Path, path: &Path, known: bool) -> io::Result<()> {
+    if known && exchanged(staged, path)? {
+        return fs::remove_file(staged);
+    }
+    fs::rename(staged, path)
 }
 
 fn clear_staged(folder: &Path) -> io::Result<()> {

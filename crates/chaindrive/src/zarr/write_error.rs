@@ -11,6 +11,10 @@ pub enum WriteError {
     #[error("{}: there is already a result here; choose another name, or have it replaced: `--overwrite`, in Python `overwrite=True`", .path.display())]
     Exists { path: PathBuf },
 
+    /// The target is a file.
+    #[error("{}: there is already a file here; choose another name, or pass --overwrite, in Python `overwrite=True`", .path.display())]
+    FileExists { path: PathBuf },
+
     /// The target holds another sweep than the one that was to go on.
     #[error("{}: there is another sweep here: {difference}; choose another name, or ask for it to be replaced", .path.display())]
     OtherSweep { path: PathBuf, difference: String },

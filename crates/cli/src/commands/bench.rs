@@ -1,6 +1,5 @@
 //! `chaindrive bench`: what do methods and steps cost, and how exact are they?
 
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use chaindrive::precision::{Study, Variant, work_precision};
@@ -8,6 +7,7 @@ use chaindrive::scene::RunDefaults;
 use chaindrive::{Request, Scene, Stepping, assemble};
 use clap::Args;
 
+use super::output::new_file;
 use crate::DrawingRequest;
 use crate::failure::Failure;
 use crate::progress::waiting;
@@ -74,49 +74,29 @@ impl Arguments {
 pub(crate) fn bench(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let settings = RunArguments::until(arguments.until.as_deref());
     let Request { scene, run, .. } = settings.apply(&arguments.scene.load(interrupted)?)?;
+    let variants = variants(arguments, &scene)?;
     let drive = scene.drive()?;
+    let place = new_file(&named(&arguments.output, "csv"), arguments.overwrite)?;
     let start = waiting("assembling", interrupted, |stop| assemble(&drive, stop));
     let start = Failure::or_interrupted(start, scene.name())?;
     let study = Study {
-        variants: variants(arguments, &scene)?,
+        variants,
         until: arguments.until.is_some().then_some(run.until),
         repeats: arguments.repeats,
         replicates: arguments.replicates,
     };
-    let file = named(&arguments.output, "csv");
-    free(&file, arguments.overwrite)?;
     let table = waiting("comparing methods", interrupted, |stop| {
         work_precision(&start, &run, &study, stop)
     });
     let table = Failure::or_interrupted(table, scene.name())?;
     print(&table)?;
-    let failed = |source| Failure::File {
-        path: file.display().to_string(),
-        source,
-    };
-    let written = table.write_csv(File::create(&file).map_err(failed)?);
-    written.map_err(|error| failed(error.into()))
-}
-
-/// Finds out before minutes of work whether a file can be written.
-fn free(file: &Path, overwrite: bool) -> Result<(), Failure> {
-    if file.exists() && !overwrite {
-        return Err(Failure::Taken {
-            path: file.display().to_string(),
-            found: "there is already a file here",
-            hint: ", or pass --overwrite",
-        });
-    }
-    let folder = file
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    match folder.map(std::fs::metadata) {
-        Some(Err(source)) => Err(Failure::File {
-            path: file.display().to_string(),
-            source,
-        }),
-        _ => Ok(()),
-    }
+    let mut text = Vec::new();
+    let written = table.write_csv(&mut text);
+    written.map_err(|error| Failure::File {
+        path: place.path().display().to_string(),
+        source: error.into(),
+    })?;
+    Ok(place.write(&text)?)
 }
 
 /// A value of an option, read as the scene reads the same setting, units included.

@@ -1,6 +1,5 @@
 //! `chaindrive draw`: a picture of a drive.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use chaindrive::draw::svg;
@@ -10,6 +9,7 @@ use clap::Args;
 
 use chaindrive::scene::read_time;
 
+use super::output::new_file;
 use crate::failure::Failure;
 use crate::progress::waiting;
 use crate::request::SceneArguments;
@@ -41,14 +41,9 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn draw(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
-    let taken = arguments.output.as_ref().filter(|output| output.exists());
-    if let Some(output) = taken.filter(|_| !arguments.overwrite) {
-        return Err(Failure::Taken {
-            path: output.display().to_string(),
-            found: "there is already a file here",
-            hint: ", or pass --overwrite",
-        });
-    }
+    let output = arguments.output.as_deref();
+    let place = output.map(|path| new_file(path, arguments.overwrite));
+    let place = place.transpose()?;
     let scene = arguments.scene.load(interrupted)?;
     let recorded = match &arguments.at {
         None => None,
@@ -64,12 +59,9 @@ pub(crate) fn draw(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Res
     if let Some(problem) = &figure.problem {
         say(format_args!("{}: {problem}", scene.name()));
     }
-    match &arguments.output {
+    match place {
         None => print(picture.trim_end()),
-        Some(path) => fs::write(path, picture).map_err(|source| Failure::File {
-            path: path.display().to_string(),
-            source,
-        }),
+        Some(place) => Ok(place.write(picture.as_bytes())?),
     }
 }
 

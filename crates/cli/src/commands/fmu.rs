@@ -3,9 +3,10 @@
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::PathBuf;
 
-use chaindrive_couple::{Export, LIBRARY, Model, Standard, write};
+use chaindrive_couple::{Export, LIBRARY, Model, PackageError, Standard, package, read_library};
 use clap::Args;
 
+use super::output::new_file;
 use super::run::{Terminal, not_run};
 use crate::failure::Failure;
 use crate::request::{RunArguments, SceneArguments};
@@ -61,13 +62,10 @@ pub(crate) fn fmu(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
             "{path}: the name must end in .fmu"
         )));
     }
-    if output.exists() && !arguments.overwrite {
-        return Err(Failure::Taken {
-            path,
-            found: "there is already a file here",
-            hint: ", or pass --overwrite",
-        });
-    }
+    let place = new_file(output, arguments.overwrite)?;
+    let refused = |error: PackageError| Failure::Argument(error.to_string());
+    let library = arguments.library.clone().map_or_else(beside, Ok)?;
+    let library = read_library(&library).map_err(refused)?;
     let standard = match arguments.fmi.as_str() {
         "2" => Standard::Two,
         _ => Standard::Three,
@@ -83,16 +81,15 @@ pub(crate) fn fmu(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     }
     let model =
         Model::new(export).map_err(|error| Failure::Argument(format!("{scene}: {error}")))?;
-    let library = arguments.library.clone().map_or_else(beside, Ok)?;
-    let written = write(&model, standard, &library, output);
-    let size = written.map_err(|error| Failure::Argument(error.to_string()))?;
+    let unit = package(&model, standard, &library).map_err(refused)?;
+    place.write(&unit)?;
     if !arguments.quiet {
         let variables = model.variables().len();
         say(format_args!(
             "{}: FMI {}, {variables} variables, {} kB",
             output.display(),
             arguments.fmi,
-            size / 1000
+            unit.len() / 1000
         ));
     }
     Ok(())

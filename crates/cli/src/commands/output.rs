@@ -4,10 +4,10 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use chaindrive::record::{Existing, Provenance, ZarrSink, take_over};
-use chaindrive::{Channel, Checkpoint, End, EventKinds, Simulation, Sink};
+use chaindrive::{Channel, Checkpoint, End, EventKinds, NewFile, Simulation, Sink};
 use clap::{Args, ValueEnum};
 
-use crate::csv::CsvWriter;
+use crate::csv::{CsvWriter, RunClaims};
 use crate::failure::Failure;
 use crate::stream::Stream;
 use crate::terminal::{print, say};
@@ -48,12 +48,13 @@ impl OutputArguments {
         if let Some(path) = self.output.as_ref().filter(|_| self.take_over) {
             take_over(path)?;
         }
-        Ok(if self.overwrite {
-            Existing::Replace
-        } else {
-            Existing::Keep
-        })
+        Ok(Existing::overwriting(self.overwrite))
     }
+}
+
+/// A file that a verb makes in one piece: before its work, the verb finds out whether that can be written.
+pub(crate) fn new_file(path: &Path, overwrite: bool) -> Result<NewFile, Failure> {
+    Ok(NewFile::at(path, Existing::overwriting(overwrite))?)
 }
 
 /// Destination of the samples, by its name.
@@ -114,14 +115,14 @@ impl Target {
         )))
     }
 
-    /// The place, still to be begun.
-    pub(crate) fn output(self, existing: Existing) -> Output {
-        match self {
+    /// The place, still to be begun; that of a table is claimed.
+    pub(crate) fn output(self, existing: Existing) -> Result<Output, Failure> {
+        Ok(match self {
             Self::Nowhere => Output::Nowhere,
             Self::Zarr(path) => Output::Zarr(Box::new(ZarrSink::new(path, existing))),
-            Self::Csv(path) => Output::NewCsv(path, existing),
+            Self::Csv(path) => Output::NewCsv(Box::new(RunClaims::take(&path, existing)?)),
             Self::Stream => Output::NewStream,
-        }
+        })
     }
 }
 
@@ -156,7 +157,7 @@ pub(crate) enum Output {
     Nowhere,
     Zarr(Box<ZarrSink>),
     /// A table that is begun when the run is.
-    NewCsv(PathBuf, Existing),
+    NewCsv(Box<RunClaims>),
     Csv(Box<CsvWriter>),
     /// A table on standard output that is begun when the run is.
     NewStream,
@@ -172,12 +173,13 @@ impl Sink for Output {
         channels: &[Channel],
         provenance: &Provenance,
     ) -> Result<(), Failure> {
-        match self {
-            Self::Nowhere | Self::Csv(_) | Self::Stream(_) => {}
-            Self::Zarr(store) => store.begin(simulation, channels, provenance)?,
-            Self::NewCsv(path, existing) => {
+        if let Self::Zarr(store) = self {
+            return Ok(store.begin(simulation, channels, provenance)?);
+        }
+        match std::mem::replace(self, Self::Nowhere) {
+            Self::NewCsv(claims) => {
                 let events = provenance.run.events;
-                let writer = CsvWriter::create(path, simulation, channels, events, *existing)?;
+                let writer = CsvWriter::create(*claims, simulation, channels, events)?;
                 *self = Self::Csv(Box::new(writer));
             }
             Self::NewStream => {
@@ -189,6 +191,7 @@ impl Sink for Output {
                 let stream = Stream::begin(simulation, channels)?;
                 *self = Self::Stream(Box::new(stream));
             }
+            begun => *self = begun,
         }
         Ok(())
     }

@@ -1,6 +1,5 @@
 //! `chaindrive replay`: a recorded run as one page to look at.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use chaindrive::SimulationError;
@@ -8,6 +7,7 @@ use chaindrive::record::RecordedRun;
 use chaindrive_replay::{AnimationError, MOST_FRAMES, Selection, film, page};
 use clap::Args;
 
+use super::output::new_file;
 use crate::DrawingRequest;
 use crate::failure::Failure;
 use crate::progress::waiting;
@@ -102,7 +102,8 @@ pub(crate) fn replay(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> R
             "{name}: a movie has no plots, leave --plot out"
         )));
     }
-    check_output(&output, arguments.overwrite)?;
+    check_name(&output)?;
+    let place = new_file(&output, arguments.overwrite)?;
     let selection = Selection {
         frames: arguments.frames.unwrap_or(MOST_FRAMES),
         plots: arguments.plot.clone(),
@@ -114,10 +115,7 @@ pub(crate) fn replay(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> R
     });
     let film = film.map_err(|error| no_film(error, &arguments.result))?;
     let text = page(&film);
-    fs::write(&output, &text).map_err(|source| Failure::File {
-        path: output.display().to_string(),
-        source,
-    })?;
+    place.write(text.as_bytes())?;
     if !arguments.quiet {
         let (name, size) = (output.display(), text.len() as f64 * 1e-6);
         let (frames, samples) = (film.frames.times.len(), recorded.samples);
@@ -136,31 +134,19 @@ fn is_movie(output: &Path) -> bool {
         .is_some_and(|it| it == "mp4" || it == "gif")
 }
 
-/// Refuses a name that is not that of a page, or is taken.
-fn check_output(output: &Path, overwrite: bool) -> Result<(), Failure> {
+/// Refuses a name that is not that of a page.
+fn check_name(output: &Path) -> Result<(), Failure> {
     let name = output.display();
     match output.extension().and_then(|extension| extension.to_str()) {
-        Some("html" | "htm") => {}
-        _ if is_movie(output) => {
-            return Err(Failure::Argument(format!(
-                "{name}: this program makes pages (.html); movies are made by the command of the Python package: \
+        Some("html" | "htm") => Ok(()),
+        _ if is_movie(output) => Err(Failure::Argument(format!(
+            "{name}: this program makes pages (.html); movies are made by the command of the Python package: \
                  pip install 'chaindrive[movie]'"
-            )));
-        }
-        _ => {
-            return Err(Failure::Argument(format!(
-                "{name}: the name must end in .html, or with the Python package in .mp4 or .gif"
-            )));
-        }
+        ))),
+        _ => Err(Failure::Argument(format!(
+            "{name}: the name must end in .html, or with the Python package in .mp4 or .gif"
+        ))),
     }
-    if output.exists() && !overwrite {
-        return Err(Failure::Taken {
-            path: name.to_string(),
-            found: "there is already a file here",
-            hint: ", or pass --overwrite",
-        });
-    }
-    Ok(())
 }
 
 fn no_film(error: AnimationError, result: &Path) -> Failure {

@@ -127,7 +127,7 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     if arguments.no_error {
         request = request.without_estimate();
     }
-    let mut result = target.output(arguments.place.existing()?);
+    let mut result = target.output(arguments.place.existing()?)?;
     let terminal = Terminal::new(arguments.telling.quiet, interrupted);
     let report = execute(&request, &mut result, &terminal);
     let report = report.map_err(|error| not_run(error, &scene))?;

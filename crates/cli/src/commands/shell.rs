@@ -1,12 +1,12 @@
 //! `chaindrive completion` and `man`: what shells and manuals are told of the command.
 
-use std::fs::create_dir_all;
 use std::path::PathBuf;
 
 use clap::{Args, Command};
 use clap_complete::{Shell, generate};
-use clap_mangen::generate_to;
+use clap_mangen::Man as Page;
 
+use super::output::new_file;
 use crate::failure::Failure;
 use crate::terminal::print;
 
@@ -40,11 +40,20 @@ pub(crate) fn completion(arguments: &Completion, mut command: Command) -> Result
 }
 
 pub(crate) fn man(arguments: &Man, command: Command) -> Result<(), Failure> {
-    let folder = &arguments.folder;
-    create_dir_all(folder)
-        .and_then(|()| generate_to(command, folder))
-        .map_err(|source| Failure::File {
-            path: folder.display().to_string(),
+    // The name of the command stands before that of a verb.
+    let mut command = command.disable_help_subcommand(true);
+    command.build();
+    let verbs = command.get_subcommands().filter(|it| !it.is_hide_set());
+    for command in verbs.cloned().chain([command.clone()]) {
+        let page = Page::new(command);
+        let path = arguments.folder.join(page.get_filename());
+        let place = new_file(&path, true)?;
+        let mut text = Vec::new();
+        page.render(&mut text).map_err(|source| Failure::File {
+            path: path.display().to_string(),
             source,
-        })
+        })?;
+        place.write(&text)?;
+    }
+    Ok(())
 }

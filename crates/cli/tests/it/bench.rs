@@ -71,7 +71,11 @@ fn the_bench_refuses_what_it_cannot_run_or_write() {
         ),
         ("--methods dormand-prince --tolerances 2", 2, "at most 1"),
         ("--repeats 0 -o x", 2, "must be a whole number, 1 or more"),
-        ("-o nowhere/bench", 3, "nowhere/bench.csv"),
+        (
+            "-o work-precision.csv/bench",
+            3,
+            "choose a place in a folder",
+        ),
         ("", 3, "--overwrite"),
     ];
     for (arguments, expected, told) in cases {

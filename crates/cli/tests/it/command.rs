@@ -264,7 +264,7 @@ fn a_place_that_cannot_be_written_exits_3() {
     let folder = folder();
     let at = folder.path();
     fs::write(at.join("file"), "").unwrap();
-    for name in ["file/ring.zarr", "file/ring.csv", "none/ring.csv"] {
+    for name in ["file/ring.zarr", "file/ring.csv", "file/none/ring.csv"] {
         let (code, out, err) = run(at, &["run", "spinning_ring", "--until", "1 ms", "-o", name]);
         assert_eq!(code, 3, "{err}");
         assert_eq!(out, "");

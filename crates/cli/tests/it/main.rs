@@ -7,6 +7,7 @@ mod first_use;
 mod interrupt;
 mod mistakes;
 mod misuse;
+mod new_files;
 mod replay;
 mod resume;
 mod same_run;

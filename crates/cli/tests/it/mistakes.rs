@@ -36,7 +36,7 @@ const LINES: [&str; 41] = [
     "run marine_two_sprockets --until 1ms --set sprockets.crank.teeth=0",
     "run marine_two_sprockets --until 1ms --set title.x=0",
     "run marine_two_sprockets --until 1ms -o result.txt",
-    "run marine_two_sprockets --until 1ms -o nowhere/result.csv",
+    "run marine_two_sprockets --until 1ms -o empty.toml/result.csv",
     "run marine_two_sprockets --until 1ms -o foreign.csv",
     "run marine_two_sprockets --until 1ms --checkpoint-every 1ms",
     "run marine_two_sprockets --untl 1ms",

@@ -389,22 +389,21 @@ fn a_sweep_on_a_full_disk_leaves_nothing_half_done() {
 }
 
 #[test]
-fn a_link_is_followed_and_one_to_nowhere_is_refused() {
+fn a_link_to_a_store_is_followed_and_one_to_nowhere_is_refused() {
     let folder = folder();
     let at = folder.path();
     fs::create_dir(at.join("big")).unwrap();
-    for name in ["ring.zarr", "ring.csv"] {
-        std::os::unix::fs::symlink(Path::new("big").join(name), at.join(name)).unwrap();
-        let to = [&words(SHORT)[..], &["-o", name]].concat();
-        let (code, err) = run(at, &to);
-        assert_eq!(code, 3);
-        assert!(err.contains("symbolic link to big/ring."), "{err}");
-        let real = format!("big/{name}");
-        assert_eq!(run(at, &[&words(SHORT)[..], &["-o", &real]].concat()).0, 0);
-        assert_eq!(run(at, &[&to[..], &["--overwrite"]].concat()).0, 0);
-        assert!(at.join(name).is_symlink());
-    }
-    assert_eq!(names(&at.join("big")), ["ring.csv", "ring.zarr"]);
+    let name = "ring.zarr";
+    std::os::unix::fs::symlink(Path::new("big").join(name), at.join(name)).unwrap();
+    let to = [&words(SHORT)[..], &["-o", name]].concat();
+    let (code, err) = run(at, &to);
+    assert_eq!(code, 3);
+    assert!(err.contains("symbolic link to big/ring."), "{err}");
+    let real = format!("big/{name}");
+    assert_eq!(run(at, &[&words(SHORT)[..], &["-o", &real]].concat()).0, 0);
+    assert_eq!(run(at, &[&to[..], &["--overwrite"]].concat()).0, 0);
+    assert!(at.join(name).is_symlink());
+    assert_eq!(names(&at.join("big")), [name]);
 }
 
 #[test]

@@ -90,11 +90,7 @@ impl SweepCoordinator {
         overwrite: bool,
         workers: Option<usize>,
     ) -> PyResult<Self> {
-        let existing = if overwrite {
-            Existing::Replace
-        } else {
-            Existing::Keep
-        };
+        let existing = Existing::overwriting(overwrite);
         let objects = match &store {
             Store::Disk(_) => None,
             Store::Objects(object) => Some(object.clone_ref(py)),
