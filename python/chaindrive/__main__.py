@@ -6,6 +6,7 @@ import _signal  # type: ignore[import-not-found]
 import os
 
 INTERRUPTED = 130
+PROGRAM = 70
 
 
 def _leave(*_: object) -> None:
@@ -71,6 +72,13 @@ def main() -> int:
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
+    except Exception as error:
+        from chaindrive.errors import ProgramError
+
+        if not isinstance(error, ProgramError):
+            raise
+        print(error, file=sys.stderr)
+        return PROGRAM
 
 
 if __name__ == "__main__":

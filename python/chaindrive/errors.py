@@ -28,6 +28,7 @@ __all__ = [
     "IntegrationError",
     "ParameterError",
     "Problem",
+    "ProgramError",
     "ResultWarning",
     "ResumeError",
     "SceneError",
@@ -118,6 +119,10 @@ class AssemblyError(SimulationError):
 
 class IntegrationError(SimulationError):
     """The time stepping failed: an unstable step, or a motion that ceased to be finite."""
+
+
+class ProgramError(ChaindriveError, RuntimeError):
+    """The package made a mistake of its own: its message is what to report."""
 
 
 class WriteError(ChaindriveError, OSError):

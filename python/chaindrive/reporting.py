@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import xarray as xr
 
 from chaindrive.drive import Drive, load
-from chaindrive.errors import ChaindriveError
+from chaindrive.errors import ChaindriveError, ProgramError
 from chaindrive.extras import extra
 from chaindrive.page import page_of, section, table
 from chaindrive.replaying import replay
@@ -228,6 +228,8 @@ def command(source: str, output: Path, *, overwrite: bool, quiet: bool) -> int:
     try:
         text = report(_named(source))
         output.write_text(text, encoding="utf-8")
+    except ProgramError:
+        raise
     except (ChaindriveError, ValueError, OSError, ModuleNotFoundError) as error:
         print(f"{source}: {error}", file=sys.stderr)
         return 2

@@ -47,6 +47,38 @@ def test_errors_travel():
     assert str(copy) == str(caught.value)
 
 
+@pytest.mark.parametrize("elsewhere", [False, True])
+def test_a_panic_is_an_error_that_says_what_to_report(elsewhere: bool, capfd) -> None:
+    with pytest.raises(cd.ProgramError, match="please report this") as caught:
+        cd._core._panic(elsewhere)
+    told = str(caught.value)
+    assert "crates/python/src/lib.rs:" in told
+    assert cd.__build__ in told
+    assert told.endswith("as asked for")
+    assert issubclass(cd.ProgramError, cd.ChaindriveError)
+    # It can be caught again while another one is told of.
+    try:
+        raise KeyError
+    except KeyError:
+        with pytest.raises(cd.ProgramError) as again:
+            cd._core._panic(elsewhere)
+    assert isinstance(again.value.__context__, KeyError)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_panic_of_the_command_has_an_exit_code_of_its_own() -> None:
+    program = """
+from chaindrive import __main__, _core
+_core._drawn = lambda arguments: _core._panic(False)
+raise SystemExit(__main__.main())
+"""
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 70
+    assert "please report this" in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
 def test_a_file_that_is_not_there(tmp_path):
     with pytest.raises(cd.SceneError, match="no such file"):
         cd.load(tmp_path / "nothing.toml")

@@ -1,12 +1,10 @@
 //! Calls: numbers looked up, panics caught, refusals told.
 
-use std::any::Any;
 use std::ffi::{CString, c_int};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::TryLockError;
 
-use chaindrive_couple::{Fault, Instance, Model};
+use chaindrive_couple::{Fault, Instance, Model, caught};
 
 use crate::logger::Logger;
 use crate::units::{Handle, Unit, find, keep};
@@ -35,7 +33,7 @@ pub(crate) fn on(
         eprintln!("{function}: no instance has this handle; it was never made, or is freed");
         return ERROR;
     };
-    let made = catch_unwind(AssertUnwindSafe(|| match unit.instance.try_lock() {
+    let made = caught(|| match unit.instance.try_lock() {
         Ok(mut instance) => act(&unit, &mut instance).map_err(|fault| (ERROR, fault.0)),
         Err(TryLockError::WouldBlock) => {
             let busy = "another thread is in a call of this instance";
@@ -45,7 +43,7 @@ pub(crate) fn on(
             let lost = "the instance was lost in a call before; free it";
             Err((FATAL, lost.to_owned()))
         }
-    }));
+    });
     let (status, message) = match made {
         Ok(Ok(())) => {
             if unit.logger.follows() {
@@ -54,7 +52,7 @@ pub(crate) fn on(
             return OK;
         }
         Ok(Err(refused)) => refused,
-        Err(panic) => (FATAL, said(panic.as_ref())),
+        Err(fault) => (FATAL, fault.to_string()),
     };
     // The instance is free again: an importer may call it from its logger.
     unit.logger
@@ -74,7 +72,7 @@ pub(crate) fn instantiate(
     resources: Option<&Path>,
     logger: Logger,
 ) -> Handle {
-    let made = catch_unwind(|| {
+    let made = caught(|| {
         let resources = resources.ok_or("the folder of the resources is missing")?;
         let token = token.ok_or("the token of modelDescription.xml is missing")?;
         let model = Model::of_resources(resources).map_err(|error| error.to_string())?;
@@ -90,7 +88,7 @@ pub(crate) fn instantiate(
     let message = match made {
         Ok(Ok(instance)) => return keep(instance, logger),
         Ok(Err(reason)) => reason,
-        Err(panic) => said(panic.as_ref()),
+        Err(fault) => fault.to_string(),
     };
     logger.tell(ERROR, REFUSED, &format!("{function}: {message}"));
     std::ptr::null_mut()
@@ -108,12 +106,16 @@ pub(crate) fn named(name: Option<&std::ffi::CStr>) -> CString {
     name.unwrap_or(c"drive").to_owned()
 }
 
-/// What a panic said.
-fn said(panic: &(dyn Any + Send)) -> String {
-    let text = panic.downcast_ref::<String>().map(String::as_str);
-    let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
-    format!(
-        "a mistake of chaindrive, please report it: {}",
-        text.unwrap_or("no message")
-    )
+/// Lets an instance go.
+pub(crate) fn free(function: &str, handle: Handle) {
+    if handle.is_null() {
+        return;
+    }
+    match caught(|| crate::units::free(handle)) {
+        Ok(true) => {}
+        Ok(false) => {
+            eprintln!("{function}: no instance has this handle; it is freed already");
+        }
+        Err(fault) => eprintln!("{function}: {fault}"),
+    }
 }

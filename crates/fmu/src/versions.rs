@@ -37,10 +37,7 @@ macro_rules! functions {
         /// Lets an instance go; null is no mistake.
         #[unsafe(no_mangle)]
         pub extern "C" fn $free(instance: $crate::units::Handle) {
-            if !instance.is_null() && !$crate::units::free(instance) {
-                let name = stringify!($free);
-                eprintln!("{name}: no instance has this handle; it is freed already");
-            }
+            $crate::calls::free(stringify!($free), instance);
         }
 
         $crate::versions::functions! { calls:

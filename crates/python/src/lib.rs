@@ -91,6 +91,7 @@ mod core {
             ("chaindrive_profile", build.profile),
             ("instruction_set", &instruction_set),
         ];
+        crate::errors::net_panics(module.py())?;
         module.add("__build__", &build.id)?;
         module.add("_origin", origin.into_py_dict(module.py())?)
     }
@@ -106,6 +107,17 @@ mod core {
             it.overwrite,
             it.quiet,
         ))
+    }
+
+    /// Panics, so that tests see what becomes of it: here, or in a thread that the caller waits for.
+    #[pyfunction]
+    fn _panic(py: Python<'_>, elsewhere: bool) -> PyResult<()> {
+        let fail = || -> () { panic!("as asked for") };
+        if elsewhere {
+            return crate::signals::patiently(py, fail);
+        }
+        fail();
+        Ok(())
     }
 
     /// Runs the command line with its arguments, the program's name first; returns the exit code.

@@ -91,6 +91,16 @@ pub(super) fn resolve(
                 .or_multiple(None::<f64>, default, pitch)
         }
     };
+    if !described.sprockets.is_empty() && roller_diameter >= pitch {
+        // Before anything is laid: a route of a wrong pitch takes millions of links.
+        let refused = format!("{roller_diameter:e} m, must be smaller than the pitch, {pitch:e} m");
+        findings.refuse_with(
+            "chain.roller_diameter",
+            refused,
+            "look at the units of both",
+        );
+        return None;
+    }
     let roller_length = text.roller.as_ref().and_then(|roller| roller.length);
     let roller_length = roller_length.map(f64::from);
     let roller_length = roller_length.or(of_type.and_then(catalogue::roller_length));
