@@ -73,11 +73,11 @@ def main() -> int:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
     except Exception as error:
-        from chaindrive.errors import ProgramError
+        from chaindrive.errors import ProgramError, tell
 
         if not isinstance(error, ProgramError):
             raise
-        print(error, file=sys.stderr)
+        tell(error)
         return PROGRAM
 
 

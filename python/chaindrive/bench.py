@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import csv
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
+from chaindrive.errors import tell
 from chaindrive.extras import extra
 
 __all__ = ["command"]
@@ -19,7 +19,7 @@ def command(run: Callable[[], int], table: Path, picture: Path, *, overwrite: bo
     """Run the command, which writes its table, draw that, and return the exit code."""
     if picture.exists() and not overwrite:
         hint = "choose another name, or pass --overwrite"
-        print(f"{picture}: there is already a file here; {hint}", file=sys.stderr)
+        tell(f"{picture}: there is already a file here; {hint}")
         return 3
     code = run()
     if code:
@@ -28,7 +28,7 @@ def command(run: Callable[[], int], table: Path, picture: Path, *, overwrite: bo
         pyplot = extra("matplotlib.pyplot", "diagrams")
     except ModuleNotFoundError as error:
         # The table is there.
-        print(f"{picture}: not drawn, {error}", file=sys.stderr)
+        tell(f"{picture}: not drawn, {error}")
         return 0
     from chaindrive.plot import work_precision
 

@@ -91,7 +91,12 @@ def export(
     if target.suffix != ".fmu":
         message = f"{target}: the name must end in .fmu"
         raise ParameterError(message, "path", "such as drive.fmu")
-    if target.exists() and not overwrite:
+    try:
+        is_taken = target.exists()
+    except OSError as error:
+        # A name that the system does not take.
+        raise WriteError(f"{target}: {error.strerror}", target, "give another name") from error
+    if is_taken and not overwrite:
         message = f"{target}: there is already a file here"
         raise WriteError(message, target, "give `overwrite=True`, or another name")
     settings: dict[str, Any] = {

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from chaindrive.errors import tell
 from chaindrive.extras import extra
 from chaindrive.plot.scheme import CARRIER, GUIDE, OUTLINE, PLATES, STEEL
 from chaindrive.plot.units import in_trade, written
@@ -299,7 +300,7 @@ def command(source: str, output: Path, *, frames: int | None, overwrite: bool, q
     from chaindrive.results import open_result
 
     if output.exists() and not overwrite:
-        print(f"{output}: there is already something here; pass --overwrite", file=sys.stderr)
+        tell(f"{output}: there is already something here; pass --overwrite")
         return 3
     shown = _line if sys.stderr.isatty() and not quiet else False
     try:
@@ -307,8 +308,8 @@ def command(source: str, output: Path, *, frames: int | None, overwrite: bool, q
         movie(run, output, frames=PICTURES if frames is None else frames, progress=shown)
     except (KeyError, ValueError, FileNotFoundError, ModuleNotFoundError) as error:
         message = error.args[0] if isinstance(error, KeyError) else error
-        print(f"{source}: {message}", file=sys.stderr)
+        tell(f"{source}: {message}")
         return 2
     if not quiet:
-        print(f"{output}: {output.stat().st_size / 1e6:.2f} MB", file=sys.stderr)
+        tell(f"{output}: {output.stat().st_size / 1e6:.2f} MB")
     return 0

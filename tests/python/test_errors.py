@@ -193,3 +193,25 @@ def test_nothing_is_printed_or_logged() -> None:
     command = [sys.executable, "-W", "error", "-c", code]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_what_no_scene_holds_is_named_by_its_path() -> None:
+    scene = cd.scenes.industrial_16b().to_dict()
+    scene["chain"]["pitch"] = float("nan")
+    scene["sprockets"][1]["inertia"] = np.float64("inf")
+    scene["title"] = b"bytes"
+    with pytest.raises(cd.SceneError) as caught:
+        cd.Drive.from_dict(scene, name="mine")
+    found = {problem.path: problem.message for problem in caught.value.problems}
+    assert found == {
+        "chain.pitch": "nan, must be finite",
+        "sprockets[1].inertia": "inf, must be finite",
+        "title": "bytes has no place in a scene",
+    }
+    assert str(caught.value).count("mine: ") == 3
+    with pytest.raises(cd.SceneError, match=r"chain\.pitch: -inf, must be finite"):
+        cd.scenes.industrial_16b().replace({"chain.pitch": -np.inf})
+    endless: dict[str, object] = {}
+    endless["chain"] = endless
+    with pytest.raises(cd.SceneError, match="nested deeper"):
+        cd.Drive.from_dict(endless)

@@ -276,7 +276,7 @@ def test_values_may_be_anything_that_a_scene_takes():
         ({}, {}, cd.ParameterError, "nothing is varied"),
         ({PRETENSION: []}, {}, cd.ParameterError, "no values"),
         ({PRETENSION: ["1 kN", 1000]}, {}, cd.ParameterError, "stands twice"),
-        ({PRETENSION: [object()]}, {}, cd.ParameterError, "no place in a scene"),
+        ({PRETENSION: [object()]}, {}, cd.SceneError, "no place in a scene"),
         ({PRETENSION: [np.nan]}, {}, cd.ParameterError, PRETENSION),
         ({PRETENSION: ["1 mm"]}, {}, cd.SceneError, "is a length"),
         ({"route.pretenson": [1.0]}, {}, cd.SceneError, "pretension"),

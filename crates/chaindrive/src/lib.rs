@@ -79,5 +79,5 @@ pub use sheet::aligned;
 pub use simulate::{Control, Period, Simulation, Snapshot, SnapshotError, View, step_many};
 pub use stepping::Stepping;
 pub use summary::{ImpactStatistics, Summary};
-pub use terminal_text::plain;
+pub use terminal_text::{cell, one_line, plain, plain_json};
 pub use verdict::{Reason, Rule, Trust, Verdict};

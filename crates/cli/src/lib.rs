@@ -209,7 +209,7 @@ fn carry_out(
 fn complained(error: Trouble) -> u8 {
     let code = error.exit_code;
     let text = serde_json::to_string_pretty(&Complaint { error });
-    say(answer::spelled(&text.unwrap_or_default()));
+    say(chaindrive::plain_json(&text.unwrap_or_default()));
     code
 }
 

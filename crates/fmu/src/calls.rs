@@ -3,6 +3,9 @@
 use std::ffi::{CString, c_int};
 use std::path::Path;
 use std::sync::TryLockError;
+use std::sync::atomic::Ordering;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use chaindrive_couple::{Fault, Instance, Model, caught};
 
@@ -11,6 +14,8 @@ use crate::units::{Handle, Unit, find, keep};
 
 /// Status of a call, the same numbers in both versions of the standard.
 pub(crate) const OK: c_int = 0;
+/// The call was made, and something is to be known about it.
+pub(crate) const WARNING: c_int = 1;
 /// The call was made, and did not do all.
 pub(crate) const DISCARD: c_int = 2;
 /// The call was refused.
@@ -18,15 +23,61 @@ pub(crate) const ERROR: c_int = 3;
 /// The instance is lost.
 pub(crate) const FATAL: c_int = 4;
 
-/// Category of refusals, and of calls that were made.
+/// Category of warnings, of refusals, and of calls that were made.
+const WARNED: &str = "logStatusWarning";
 const REFUSED: &str = "logStatusError";
 const CALLED: &str = "logAll";
+
+/// Wall time for which a step is waited for that is to be given up, and between two looks at it. A step looks every 50 ms.
+const PATIENCE: Duration = Duration::from_secs(5);
+const LOOK: Duration = Duration::from_millis(5);
 
 /// Makes a call on an instance.
 pub(crate) fn on(
     handle: Handle,
     function: &str,
     act: impl FnOnce(&Unit, &mut Instance) -> Result<(), Fault>,
+) -> c_int {
+    warned(handle, function, |unit, instance| {
+        act(unit, instance).map(|()| None)
+    })
+}
+
+/// Moves an instance on; [`terminate`] gives it up.
+pub(crate) fn step(
+    handle: Handle,
+    function: &str,
+    [from, length]: [f64; 2],
+    then: impl FnOnce(&Instance),
+) -> c_int {
+    warned(handle, function, |unit, instance| {
+        unit.gives_up.store(false, Ordering::Relaxed);
+        let stop = || unit.gives_up.load(Ordering::Relaxed);
+        let stepped = instance.step_until(from, length, &stop);
+        then(instance);
+        stepped
+    })
+}
+
+/// Ends the simulation. A step that another thread waits for is given up first.
+pub(crate) fn terminate(handle: Handle, function: &str) -> c_int {
+    if let Some(unit) = find(handle) {
+        let begin = Instant::now();
+        while matches!(unit.instance.try_lock(), Err(TryLockError::WouldBlock))
+            && begin.elapsed() < PATIENCE
+        {
+            unit.gives_up.store(true, Ordering::Relaxed);
+            sleep(LOOK);
+        }
+    }
+    on(handle, function, |_, instance| instance.terminate())
+}
+
+/// Makes a call that may have something to be known about.
+fn warned(
+    handle: Handle,
+    function: &str,
+    act: impl FnOnce(&Unit, &mut Instance) -> Result<Option<String>, Fault>,
 ) -> c_int {
     let Some(unit) = find(handle) else {
         // There is nobody else to tell it to.
@@ -45,7 +96,12 @@ pub(crate) fn on(
         }
     });
     let (status, message) = match made {
-        Ok(Ok(())) => {
+        Ok(Ok(Some(warning))) => {
+            unit.logger
+                .tell(WARNING, WARNED, &format!("{function}: {warning}"));
+            return WARNING;
+        }
+        Ok(Ok(None)) => {
             if unit.logger.follows() {
                 unit.logger.tell(OK, CALLED, function);
             }

@@ -104,7 +104,7 @@ fn a_number_at_its_end_is_told_or_taken() {
 #[test]
 #[ignore = "slow"]
 fn every_number_at_every_end_is_told_or_taken() {
-    let names: Vec<_> = presets().map(|(name, _)| name).collect();
+    let names: Vec<_> = presets().iter().map(|(name, _)| *name).collect();
     ends_of(&names, 1, |about, drive, complaints| {
         let stop = Instant::now() + PATIENCE;
         let assembled = || chaindrive::assemble(drive, &|| Instant::now() > stop);
