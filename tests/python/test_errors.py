@@ -48,7 +48,8 @@ def test_errors_travel():
 
 
 @pytest.mark.parametrize("elsewhere", [False, True])
-def test_a_panic_is_an_error_that_says_what_to_report(elsewhere: bool, capfd) -> None:
+def test_a_panic_is_an_error_that_says_what_to_report(elsewhere: bool, capfd, monkeypatch) -> None:
+    monkeypatch.delenv("RUST_BACKTRACE", raising=False)
     with pytest.raises(cd.ProgramError, match="please report this") as caught:
         cd._core._panic(elsewhere)
     told = str(caught.value)
@@ -66,7 +67,8 @@ def test_a_panic_is_an_error_that_says_what_to_report(elsewhere: bool, capfd) ->
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_panic_of_the_command_has_an_exit_code_of_its_own() -> None:
+def test_a_panic_of_the_command_has_an_exit_code_of_its_own(monkeypatch) -> None:
+    monkeypatch.delenv("RUST_BACKTRACE", raising=False)
     program = """
 from chaindrive import __main__, _core
 _core._drawn = lambda arguments: _core._panic(False)
@@ -97,9 +99,9 @@ def test_a_preset_that_is_not_there():
 
 @pytest.mark.parametrize("value", [np.nan, [1.0, np.inf], object(), {1, 2}])
 def test_a_value_that_has_no_place_in_a_scene(value):
-    with pytest.raises(cd.ParameterError) as caught:
+    with pytest.raises(cd.SceneError) as caught:
         cd.scenes.marine_engine().replace({"chain.mass": value})
-    assert caught.value.path == "chain.mass"
+    assert caught.value.path.startswith("chain.mass")
 
 
 @pytest.mark.parametrize(

@@ -277,7 +277,7 @@ def test_values_may_be_anything_that_a_scene_takes():
         ({PRETENSION: []}, {}, cd.ParameterError, "no values"),
         ({PRETENSION: ["1 kN", 1000]}, {}, cd.ParameterError, "stands twice"),
         ({PRETENSION: [object()]}, {}, cd.SceneError, "no place in a scene"),
-        ({PRETENSION: [np.nan]}, {}, cd.ParameterError, PRETENSION),
+        ({PRETENSION: [np.nan]}, {}, cd.SceneError, PRETENSION),
         ({PRETENSION: ["1 mm"]}, {}, cd.SceneError, "is a length"),
         ({"route.pretenson": [1.0]}, {}, cd.SceneError, "pretension"),
         ({"chain.links": np.linspace(112, 113, 3)}, {}, cd.SceneError, "chain.links"),
