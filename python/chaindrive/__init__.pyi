@@ -30,6 +30,7 @@ from chaindrive.errors import ClashWarning as ClashWarning
 from chaindrive.errors import DistrustedResultWarning as DistrustedResultWarning
 from chaindrive.errors import IntegrationError as IntegrationError
 from chaindrive.errors import ParameterError as ParameterError
+from chaindrive.errors import ProgramError as ProgramError
 from chaindrive.errors import ResultWarning as ResultWarning
 from chaindrive.errors import ResumeError as ResumeError
 from chaindrive.errors import SceneError as SceneError

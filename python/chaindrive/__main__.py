@@ -6,6 +6,7 @@ import _signal  # type: ignore[import-not-found]
 import os
 
 INTERRUPTED = 130
+PROGRAM = 70
 
 
 def _leave(*_: object) -> None:
@@ -78,6 +79,13 @@ def main() -> int:
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
+    except Exception as error:
+        from chaindrive.errors import ProgramError, tell
+
+        if not isinstance(error, ProgramError):
+            raise
+        tell(error)
+        return PROGRAM
 
 
 if __name__ == "__main__":

@@ -5,12 +5,12 @@ from __future__ import annotations
 import csv
 import os
 import re
-import sys
 from collections.abc import Iterator
 from threading import Thread
 from typing import IO, Any
 
 from chaindrive import _core
+from chaindrive.errors import tell
 from chaindrive.extras import extra
 
 __all__ = ["command"]
@@ -28,7 +28,7 @@ def command(arguments: list[str]) -> int:
         for module in ("pyarrow.csv", "pyarrow.ipc"):
             extra(module, "Arrow streams")
     except ModuleNotFoundError as error:
-        print(f"--format arrow: {error}", file=sys.stderr)
+        tell(f"--format arrow: {error}")
         return 2
     refused: list[Exception] = []
 
@@ -53,7 +53,7 @@ def command(arguments: list[str]) -> int:
         os.close(_STDOUT)
         converter.join()
     if refused and code == 0:
-        print(f"stdout: {refused[0]}", file=sys.stderr)
+        tell(f"stdout: {refused[0]}")
         return _FAILED
     return code
 

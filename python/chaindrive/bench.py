@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from chaindrive._core import NewFile
+from chaindrive.errors import tell
 from chaindrive.extras import extra
 
 __all__ = ["command"]
@@ -22,7 +22,7 @@ def command(run: Callable[[], int], table: Path, picture: Path, place: NewFile) 
     try:
         pyplot = extra("matplotlib.pyplot", "diagrams")
     except ModuleNotFoundError as error:
-        print(f"{picture}: will not be drawn, {error}", file=sys.stderr)
+        tell(f"{picture}: will not be drawn, {error}")
         return run()
     code = run()
     if code:

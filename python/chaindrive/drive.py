@@ -16,6 +16,7 @@ from chaindrive.contact_law import Law
 from chaindrive.errors import ParameterError, SceneError
 from chaindrive.profile import Profile
 from chaindrive.quantity import with_unit
+from chaindrive.scene_values import scene_json
 
 if TYPE_CHECKING:
     from typing import Self
@@ -92,7 +93,7 @@ class Drive:
         SceneError
             With everything that is wrong, each with its path.
         """
-        return cls._of(_core.Drive.from_data(_json(scene, name), name))
+        return cls._of(_core.Drive.from_data(scene_json(scene, name, ""), name))
 
     def replace(self, changes: Mapping[str, Any]) -> Drive:
         """Return a new drive with some values of its scene replaced.
@@ -108,7 +109,7 @@ class Drive:
         SceneError
             A path leads nowhere, or the new scene is not a drive.
         """
-        pairs = [(path, _json(value, path)) for path, value in changes.items()]
+        pairs = [(path, scene_json(value, self.name, path)) for path, value in changes.items()]
         return Drive._of(self._inner.replace(pairs))
 
     def resolved(self) -> Drive:
@@ -554,26 +555,3 @@ def _number(drive: Drive, name: str, value: Quantity | None) -> float | None:
 
 def _from_text(text: str, name: str) -> Drive:
     return Drive._of(_core.Drive.from_text(text, name))
-
-
-def _json(value: Any, path: str) -> str:
-    try:
-        return json.dumps(value, default=_plain, allow_nan=False)
-    except (TypeError, ValueError) as error:
-        hint = "a number, text, truth value, list, dict or NumPy array of finite numbers"
-        raise ParameterError(f"{path}: {error}", path, hint) from error
-
-
-def _plain(value: object) -> object:
-    if isinstance(value, np.ndarray | np.generic):
-        return value.tolist()
-    if isinstance(value, PathLike):
-        return fspath(value)
-    measured = with_unit(value)
-    if measured is not value:
-        return measured
-    import xarray as xr
-
-    if isinstance(value, xr.DataArray):
-        return value.to_numpy().tolist()
-    raise TypeError(f"{type(value).__name__} has no place in a scene")

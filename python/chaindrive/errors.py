@@ -28,6 +28,7 @@ __all__ = [
     "IntegrationError",
     "ParameterError",
     "Problem",
+    "ProgramError",
     "ResultWarning",
     "ResumeError",
     "SceneError",
@@ -120,6 +121,10 @@ class IntegrationError(SimulationError):
     """The time stepping failed: an unstable step, or a motion that ceased to be finite."""
 
 
+class ProgramError(ChaindriveError, RuntimeError):
+    """The package made a mistake of its own: its message is what to report."""
+
+
 class WriteError(ChaindriveError, OSError):
     """Results could not be written; `path` is the file."""
 
@@ -139,7 +144,12 @@ def warn(message: str, category: type[Warning]) -> None:
     frame, level = sys._getframe(), 1
     while frame.f_globals.get("__name__", "").partition(".")[0] == "chaindrive" and frame.f_back:
         frame, level = frame.f_back, level + 1
-    warnings.warn(message, category, stacklevel=level)
+    warnings.warn(_core.plain(message), category, stacklevel=level)
+
+
+def tell(message: object) -> None:
+    """Write a line to the standard error output; texts of others command no terminal in it."""
+    print(_core.plain(str(message)), file=sys.stderr)
 
 
 class ResultWarning(UserWarning):

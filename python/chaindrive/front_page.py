@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import tomllib
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -11,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from chaindrive.analysis.parts import chains, sprockets
-from chaindrive.page import Page, table
+from chaindrive.page import Page, escaped, table
 from chaindrive.plot.units import in_trade
 
 __all__ = ["front_page"]
@@ -61,7 +60,7 @@ def front_page(run: xr.Dataset, told: Page) -> str:
 
 
 def _paragraph(text: str) -> str:
-    return f"<p>{html.escape(text)}</p>" if text else ""
+    return f"<p>{escaped(text)}</p>" if text else ""
 
 
 def _designations(run: xr.Dataset) -> Iterator[str]:
@@ -137,4 +136,4 @@ def _verdict(told: Mapping[str, Any]) -> str:
     title, _, outcome = told["title"].partition(": ")
     on = "On the chain" if title.endswith("chain") else "On the numbers"
     first = " ".join(told["sentences"][:_SENTENCES])
-    return f"<p><strong>{on}: {html.escape(outcome)}.</strong> {html.escape(first)}</p>"
+    return f"<p><strong>{on}: {escaped(outcome)}.</strong> {escaped(first)}</p>"

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from chaindrive._core import NewFile
-from chaindrive.errors import WriteError
+from chaindrive.errors import WriteError, tell
 from chaindrive.extras import extra
 from chaindrive.plot.scheme import CARRIER, GUIDE, OUTLINE, PLATES, STEEL
 from chaindrive.plot.units import in_trade, written
@@ -338,8 +338,8 @@ def command(source: str, output: Path, place: NewFile, *, frames: int | None, qu
         raise
     except (KeyError, ValueError, FileNotFoundError, ModuleNotFoundError) as error:
         message = error.args[0] if isinstance(error, KeyError) else error
-        print(f"{source}: {message}", file=sys.stderr)
+        tell(f"{source}: {message}")
         return 2
     if not quiet:
-        print(f"{output}: {output.stat().st_size / 1e6:.2f} MB", file=sys.stderr)
+        tell(f"{output}: {output.stat().st_size / 1e6:.2f} MB")
     return 0

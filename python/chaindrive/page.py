@@ -9,6 +9,8 @@ from typing import Any
 
 import xarray as xr
 
+from chaindrive import _core
+
 __all__ = ["Page", "page_of"]
 
 
@@ -57,7 +59,8 @@ def page_of(run: xr.Dataset) -> Page:
     Raises
     ------
     ValueError
-        The dataset is no run of chaindrive, or has no page: it did not end, or is older.
+        The dataset is no run of chaindrive, or has no page: it did not end, or is older. Or the
+        page is damaged.
 
     Examples
     --------
@@ -73,20 +76,34 @@ def page_of(run: xr.Dataset) -> Page:
             "this dataset has no page of a run: "
             "the run has not ended, or a version before 0.3 made it; simulate it again"
         )
-    page = json.loads(str(attributes["page"]))
-    # A result of 0.3.0 has no first page.
-    front = page.get("front")
-    return Page(str(attributes["summary"]), page["sections"], str(attributes["numerics"]), front)
+    try:
+        told = json.loads(str(attributes["page"]))
+        # A result of 0.3.0 has no first page.
+        texts = _told(attributes, "summary"), _told(attributes, "numerics")
+        page = Page(texts[0], told["sections"], texts[1], told.get("front"))
+        page._repr_html_()
+    except (ValueError, KeyError, TypeError, IndexError, AttributeError) as error:
+        raise ValueError(f"the page of this run is damaged: {error!r}") from error
+    return page
+
+
+def _told(attributes: dict[str, Any], name: str) -> str:
+    return _core.plain(str(attributes[name]))
+
+
+def escaped(text: str) -> str:
+    """Return a text as HTML; texts of others have no characters in it that are not seen."""
+    return html.escape(_core.plain(text))
 
 
 def section(told: dict[str, Any], level: int = 4) -> str:
     """Return a section as HTML, its heading of a level."""
-    parts = [f"<h{level}>{html.escape(_heading(told['title']))}</h{level}>"]
+    parts = [f"<h{level}>{escaped(_heading(told['title']))}</h{level}>"]
     if told["rows"]:
         # Words after the names stand left as well: "drives", "mm".
         words = 1 + (not any(it.isdigit() for it in told["rows"][0][1]))
         parts.append(table(told["columns"], told["rows"], len(told["columns"]) - words))
-    parts += [f"<p>{html.escape(sentence)}</p>" for sentence in told["sentences"]]
+    parts += [f"<p>{escaped(sentence)}</p>" for sentence in told["sentences"]]
     return "\n".join(parts)
 
 
@@ -96,12 +113,12 @@ def table(columns: list[str], rows: list[list[str]], figures: int | None = None)
     ``figures`` is the number of columns at the end that are figures; all but the first if absent.
     """
     names = 1 if figures is None else len(columns) - figures
-    head = "".join(f"<th>{html.escape(name)}</th>" for name in columns)
+    head = "".join(f"<th>{escaped(name)}</th>" for name in columns)
     sides = ["left"] * names + ["right"] * (len(columns) - names)
     body = "\n".join(
         "<tr>"
         + "".join(
-            f'<td style="text-align: {side}">{html.escape(cell)}</td>'
+            f'<td style="text-align: {side}">{escaped(cell)}</td>'
             for side, cell in zip(sides, row, strict=True)
         )
         + "</tr>"
@@ -127,4 +144,7 @@ def _with_verdict(dataset: xr.Dataset) -> str:
     shown = str(dataset._repr_html_())
     if "page" not in dataset.attrs or "verdict" not in dataset.attrs:
         return shown
-    return section(page_of(dataset).sections[0]) + "\n" + shown
+    try:
+        return section(page_of(dataset).sections[0]) + "\n" + shown
+    except (ValueError, IndexError):
+        return shown

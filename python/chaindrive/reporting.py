@@ -5,7 +5,6 @@ from __future__ import annotations
 import html
 import io
 import re
-import sys
 from base64 import b64encode
 from collections.abc import Callable, Iterator
 from importlib.resources import files
@@ -17,10 +16,10 @@ import xarray as xr
 
 from chaindrive._core import NewFile
 from chaindrive.drive import Drive, load
-from chaindrive.errors import ChaindriveError, WriteError
+from chaindrive.errors import ChaindriveError, ProgramError, WriteError, tell
 from chaindrive.extras import extra
 from chaindrive.front_page import front_page
-from chaindrive.page import page_of, section, table
+from chaindrive.page import escaped, page_of, section, table
 from chaindrive.replaying import replay
 from chaindrive.simulation import simulate
 
@@ -99,7 +98,7 @@ def _document(run: xr.Dataset) -> str:
     title = str(about.get("title") or about.get("scene_name") or "chain drive")
     verdict, *sections = told.sections
     parts = [
-        f"<h1>{html.escape(title)}</h1>",
+        f"<h1>{escaped(title)}</h1>",
         front_page(run, told),
         section(verdict, level=2),
         _picture("The drive at the start", lambda ax: _layout(run, ax)),
@@ -109,13 +108,13 @@ def _document(run: xr.Dataset) -> str:
         "<h2>Inputs and their sources</h2>",
         _inputs(str(about.get("resolved_scene", ""))),
         "<h2>Numerics</h2>",
-        f"<pre>{html.escape(told.numerics)}</pre>",
+        f"<pre>{escaped(told.numerics)}</pre>",
         _replay(run),
         "<h2>Scene</h2>",
-        f"<pre>{html.escape(str(about.get('scene', '')))}</pre>",
+        f"<pre>{escaped(str(about.get('scene', '')))}</pre>",
         "<h2>Build</h2>",
         "<p>"
-        + html.escape(
+        + escaped(
             f"chaindrive {about.get('chaindrive_version')}, build {about.get('chaindrive_build')}, "
             f"instruction set {about.get('instruction_set')}."
         )
@@ -126,7 +125,7 @@ def _document(run: xr.Dataset) -> str:
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{html.escape(title)}</title>\n<style>\n{style}</style>\n</head>\n"
+        f"<title>{escaped(title)}</title>\n<style>\n{style}</style>\n</head>\n"
         f"<body>\n<main>\n{body}\n</main>\n</body>\n</html>\n"
     )
 
@@ -167,11 +166,11 @@ def _picture(title: str, draw: Callable[[Axes], object]) -> str:
             drawn = io.BytesIO()
             figure.savefig(drawn, format="png", dpi=_DOTS)
         except (ChaindriveError, ModuleNotFoundError) as reason:
-            return f"<h3>{html.escape(title)}</h3>\n<p>{html.escape(str(reason))}</p>"
+            return f"<h3>{escaped(title)}</h3>\n<p>{escaped(str(reason))}</p>"
         finally:
             pyplot.close(figure)
     data = b64encode(drawn.getvalue()).decode("ascii")
-    caption = html.escape(title)
+    caption = escaped(title)
     return (
         f'<figure><img src="data:image/png;base64,{data}" alt="{caption}">'
         f"<figcaption>{caption}</figcaption></figure>"
@@ -222,7 +221,7 @@ def _replay(run: xr.Dataset) -> str:
         film = replay(run, frames=_FRAMES).html
     except (ChaindriveError, KeyError) as reason:
         told = reason.args[0] if isinstance(reason, KeyError) else reason
-        return f"<h2>Replay</h2>\n<p>{html.escape(str(told))}</p>"
+        return f"<h2>Replay</h2>\n<p>{escaped(str(told))}</p>"
     return (
         '<section class="replay">\n<h2>Replay</h2>\n'
         f'<iframe srcdoc="{html.escape(film)}" title="replay"></iframe>\n</section>'
@@ -232,18 +231,18 @@ def _replay(run: xr.Dataset) -> str:
 def command(source: str, output: Path, place: NewFile, *, quiet: bool) -> int:
     """Make the report that a command line asks for, and return the exit code."""
     if output.suffix not in (".html", ".htm"):
-        print(f"{output}: the name must end in .html", file=sys.stderr)
+        tell(f"{output}: the name must end in .html")
         return 2
     try:
         text = _report(_named(source)).encode()
         place.write(text)
-    except WriteError:
+    except (ProgramError, WriteError):
         raise
     except (ChaindriveError, ValueError, OSError, ModuleNotFoundError) as error:
-        print(f"{source}: {error}", file=sys.stderr)
+        tell(f"{source}: {error}")
         return 2
     if not quiet:
-        print(f"{output}: {len(text) / 1e6:.2f} MB", file=sys.stderr)
+        tell(f"{output}: {len(text) / 1e6:.2f} MB")
     return 0
 
 

@@ -75,7 +75,7 @@ def open_result(path: str | PathLike[str] | ObjectStore) -> xr.Dataset:
             stored.attrs["status"] = "killed"
     status = stored.attrs["status"]
     if status not in ("complete", "running"):
-        reason = stored.attrs.get("failure", "")
+        reason = " ".join(str(stored.attrs.get("failure", "")).split())
         held = stored.attrs.get("samples", stored.attrs.get("finished"))
         kind = "samples" if "samples" in stored.attrs else "variants"
         ending = f"{status}: {reason}" if reason else status
@@ -135,7 +135,19 @@ def _open(name: Place) -> xr.Dataset:
     except Exception as error:
         # Whatever Zarr and xarray make of a store that contradicts itself.
         raise ValueError(f"{name}: this result is damaged: {error!r}") from error
+    stored.attrs = {name: _told(name, value) for name, value in stored.attrs.items()}
     return stored
+
+
+# Texts that are read again, by programs.
+_AS_WRITTEN = {"scene", "resolved_scene", "page"}
+
+
+def _told(name: str, value: Any) -> Any:
+    """Return an attribute as a terminal may have it, whoever wrote it."""
+    if not isinstance(value, str) or name in _AS_WRITTEN or value[:1] in ("{", "["):
+        return value
+    return _core.plain(value)
 
 
 def take_over(path: str | PathLike[str]) -> None:

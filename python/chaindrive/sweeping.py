@@ -14,12 +14,13 @@ import numpy as np
 import xarray as xr
 
 from chaindrive import _core
-from chaindrive.drive import Drive, _json, _needed
+from chaindrive.drive import Drive, _needed
 from chaindrive.errors import DistrustedResultWarning, ParameterError, SimulationError, warn
 from chaindrive.objects import place_of
 from chaindrive.progress import told
 from chaindrive.quantity import with_unit
 from chaindrive.results import _open
+from chaindrive.scene_values import scene_json
 from chaindrive.settings import ContactPlace, MethodName, Quantity, Recorded, Target
 from chaindrive.signals import heard
 from chaindrive.simulation import _given, _listed
@@ -285,7 +286,8 @@ def _values(values: Any, path: str) -> tuple[str, ...]:
     if isinstance(values, np.ndarray | np.generic | xr.DataArray):
         values = np.asarray(values).tolist()
     single = isinstance(values, str | bytes | Mapping) or not isinstance(values, Iterable)
-    return tuple(_json(_counted(value), path) for value in ([values] if single else values))
+    listed = [values] if single else values
+    return tuple(scene_json(_counted(value), "vary", path) for value in listed)
 
 
 def _counted(value: Any) -> Any:

@@ -47,6 +47,40 @@ def test_errors_travel():
     assert str(copy) == str(caught.value)
 
 
+@pytest.mark.parametrize("elsewhere", [False, True])
+def test_a_panic_is_an_error_that_says_what_to_report(elsewhere: bool, capfd, monkeypatch) -> None:
+    monkeypatch.delenv("RUST_BACKTRACE", raising=False)
+    with pytest.raises(cd.ProgramError, match="please report this") as caught:
+        cd._core._panic(elsewhere)
+    told = str(caught.value)
+    assert "crates/python/src/lib.rs:" in told
+    assert cd.__build__ in told
+    assert told.endswith("as asked for")
+    assert issubclass(cd.ProgramError, cd.ChaindriveError)
+    # It can be caught again while another one is told of.
+    try:
+        raise KeyError
+    except KeyError:
+        with pytest.raises(cd.ProgramError) as again:
+            cd._core._panic(elsewhere)
+    assert isinstance(again.value.__context__, KeyError)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_panic_of_the_command_has_an_exit_code_of_its_own(monkeypatch) -> None:
+    monkeypatch.delenv("RUST_BACKTRACE", raising=False)
+    program = """
+from chaindrive import __main__, _core
+_core._drawn = lambda arguments: _core._panic(False)
+raise SystemExit(__main__.main())
+"""
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 70
+    assert "please report this" in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
 def test_a_file_that_is_not_there(tmp_path):
     with pytest.raises(cd.SceneError, match="no such file"):
         cd.load(tmp_path / "nothing.toml")
@@ -65,9 +99,9 @@ def test_a_preset_that_is_not_there():
 
 @pytest.mark.parametrize("value", [np.nan, [1.0, np.inf], object(), {1, 2}])
 def test_a_value_that_has_no_place_in_a_scene(value):
-    with pytest.raises(cd.ParameterError) as caught:
+    with pytest.raises(cd.SceneError) as caught:
         cd.scenes.marine_engine().replace({"chain.mass": value})
-    assert caught.value.path == "chain.mass"
+    assert caught.value.path.startswith("chain.mass")
 
 
 @pytest.mark.parametrize(
@@ -161,3 +195,25 @@ def test_nothing_is_printed_or_logged() -> None:
     command = [sys.executable, "-W", "error", "-c", code]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_what_no_scene_holds_is_named_by_its_path() -> None:
+    scene = cd.scenes.industrial_16b().to_dict()
+    scene["chain"]["pitch"] = float("nan")
+    scene["sprockets"][1]["inertia"] = np.float64("inf")
+    scene["title"] = b"bytes"
+    with pytest.raises(cd.SceneError) as caught:
+        cd.Drive.from_dict(scene, name="mine")
+    found = {problem.path: problem.message for problem in caught.value.problems}
+    assert found == {
+        "chain.pitch": "nan, must be finite",
+        "sprockets[1].inertia": "inf, must be finite",
+        "title": "bytes has no place in a scene",
+    }
+    assert str(caught.value).count("mine: ") == 3
+    with pytest.raises(cd.SceneError, match=r"chain\.pitch: -inf, must be finite"):
+        cd.scenes.industrial_16b().replace({"chain.pitch": -np.inf})
+    endless: dict[str, object] = {}
+    endless["chain"] = endless
+    with pytest.raises(cd.SceneError, match="nested deeper"):
+        cd.Drive.from_dict(endless)

@@ -1,9 +1,11 @@
 """Files of unknown origin: they carry out nothing, lead nowhere else, and end."""
 
+import csv
 import json
 import os
 import pickle
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -17,6 +19,7 @@ import pytest
 
 import chaindrive as cd
 from chaindrive.errors import ChaindriveError
+from chaindrive.page import _with_verdict
 
 COMMAND = [sys.executable, "-m", "chaindrive"]
 RUN = {"until": 4e-3, "every": 1e-4, "error": False}
@@ -284,3 +287,170 @@ def test_a_tiny_restitution_is_refused() -> None:
     """A contact that returns nothing is stiffer than any step: runs did not come back from it."""
     with pytest.raises(cd.SceneError, match="at least 1e-6"):
         cd.scenes.industrial_16b().replace({"contact.teeth.restitution": 8e-13})
+
+
+# Names that command a terminal, part lines, hide, turn the order of reading, or are formulas, tags,
+# paths or formats to somebody.
+NASTY = [
+    "\x00a",
+    "\x07a",
+    "\x08a",
+    "\x0ba",
+    "\x0ca",
+    "\ra",
+    "\x1b[2J",
+    "\x1b]0;a\x07",
+    "\x7fa",
+    "\x85a",
+    "\x9b2Ja",
+    "a\nverdict: trusted",
+    "a\tb",
+    "a\u2028b",
+    "a\u2029b",
+    "a\u200bb",
+    "a\u200db",
+    "a\u200eb",
+    "a\u202eb",
+    "a\u2060b",
+    "a\u2066b",
+    "a\u061cb",
+    "a\ufeffb",
+    "a\u00adb",
+    "a\ufff9b",
+    "a\U000e0041b",
+    "\U000e0001",
+    "=1+1",
+    "+1",
+    "-1+2",
+    "@sum",
+    "=cmd|' /C calc'!A0",
+    "<script>alert(1)</script>",
+    "</script><b>",
+    "<!--",
+    "]]>",
+    "&lt;b&gt;",
+    '" onload="x',
+    "%s%n",
+    "{0}{{title}}",
+    "a,b;c",
+    "'; drop",
+    "`id`",
+    "$(id)",
+    "../../etc",
+    "\u05e9\u05dc\u05d5\u05dd",
+    "Kette µ",
+]
+STRANGE = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\xad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb\U000e0000-\U000e0fff]"
+)
+
+
+def named(name: str, title: str) -> cd.Drive:
+    scene = cd.scenes.industrial_16b().to_dict()
+    scene["title"] = title
+    scene["sprockets"][1]["name"] = name
+    if "route" in scene:
+        scene["route"].pop("stops", None)
+    return cd.Drive.from_dict(scene)
+
+
+def outputs(drive: cd.Drive, folder: Path) -> dict[str, str]:
+    """Everything that shows names, by where."""
+    store, scene = folder / "a.zarr", folder / "a.toml"
+    run = cd.simulate(
+        drive, until=2e-4, every=1e-4, run_in=0, error=False, output=store, events=["teeth"]
+    )
+    page = run.drive.summary()
+    scene.write_text(drive.text, encoding="utf-8")
+    told = chaindrive(
+        "run",
+        scene,
+        "--until",
+        "0.2ms",
+        "--every",
+        "0.1ms",
+        "--run-in",
+        "0",
+        "--no-error",
+        "--json",
+    )
+    table = chaindrive(
+        "run",
+        scene,
+        "--until",
+        "0.2ms",
+        "--every",
+        "0.1ms",
+        "--run-in",
+        "0",
+        "--no-error",
+        "-o",
+        "-",
+    )
+    svg = folder / "a.svg"
+    files = cd.save(run, folder / "a.csv")
+    chaindrive("draw", scene, "-o", svg)
+    shown = {
+        "page": str(page),
+        "notebook": page._repr_html_(),
+        "replay": cd.replay(run).html,
+        "description": str(drive.describe()),
+        "JSON": told.stdout,
+        "terminal": told.stderr + table.stderr,
+        "CSV": table.stdout.replace("\r", ""),
+        "SVG": svg.read_text(encoding="utf-8"),
+    }
+    return shown | {file.name: file.read_text(encoding="utf-8").replace("\r", "") for file in files}
+
+
+@pytest.mark.slow
+def test_names_speak_for_nobody_else(tmp_path: Path) -> None:
+    assert len(NASTY) >= 40
+    taken = 0
+    for number, name in enumerate(NASTY):
+        for scene in [(name, "plain"), ("plain", name)]:
+            try:
+                drive = named(*scene)
+            except cd.SceneError:
+                continue
+            assert not STRANGE.search(name), ascii(name)
+            taken += 1
+            folder = tmp_path / f"{number}-{scene[0] == name}"
+            folder.mkdir()
+            for where, text in outputs(drive, folder).items():
+                assert not STRANGE.search(text), (where, ascii(name))
+                if where in ("notebook", "replay", "SVG") and "<" in name:
+                    assert name not in text, (where, name)
+                if where.lower().endswith("csv"):
+                    cells = [it for row in csv.reader(text.splitlines()) for it in row]
+                    assert not any(it[:1] in "=+@" for it in cells if it), (where, name)
+    assert taken > 15
+
+
+def test_names_with_lines_and_unseen_characters_are_refused() -> None:
+    for name in NASTY:
+        if STRANGE.search(name) or {"\n", "\t"} & set(name):
+            with pytest.raises(cd.SceneError) as refused:
+                named(name, "")
+            told = str(refused.value)
+            assert not STRANGE.search(told), ascii(name)
+            assert all(line.startswith("scene: ") for line in told.splitlines()), ascii(name)
+
+
+def test_what_a_foreign_result_says_commands_no_terminal(store: Path) -> None:
+    group = json.loads((store / "zarr.json").read_text())
+    evil = "\x1b]0;a\x07\u202e\nverdict: trusted"
+    group["attributes"] |= {"status": "failed", "failure": evil, "title": evil, "summary": evil}
+    (store / "zarr.json").write_text(json.dumps(group))
+    with pytest.warns(cd.ResultWarning) as warned:
+        run = cd.open_result(store)
+    (told,) = [str(it.message) for it in warned]
+    assert not STRANGE.search(told)
+    assert "\n" not in told
+    assert not STRANGE.search(run.attrs["failure"] + run.attrs["title"])
+    group["attributes"] |= {"status": "complete", "page": "{"}
+    (store / "zarr.json").write_text(json.dumps(group))
+    run = cd.open_result(store)
+    with pytest.raises(ValueError, match="damaged"):
+        run.drive.summary()
+    assert "<" in _with_verdict(run)

@@ -139,7 +139,7 @@ pub(crate) fn execute_by<S: Sink>(
     sink: &mut S,
     onlooker: &dyn Onlooker,
 ) -> Result<Report, RunError<S::Error>> {
-    let setup = Setup::new(request, known, onlooker)?;
+    let mut setup = Setup::new(request, known, onlooker)?;
     let mut waiting = None;
     if setup.provenance.run.run_in != RunIn::None {
         let simulation = setup.simulation().map_err(not_started)?;

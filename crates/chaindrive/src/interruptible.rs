@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use chaindrive_mechanics::{Assembled, Drive};
 
-use crate::SimulationError;
+use crate::{SimulationError, caught};
 
 /// Wall time between two looks at whoever may want to stop.
 pub(crate) const LOOK: Duration = Duration::from_millis(50);
@@ -20,22 +20,20 @@ pub fn patiently<T: Send + 'static>(
     stop: &dyn Fn() -> bool,
 ) -> Result<T, SimulationError> {
     let (sender, receiver) = channel();
-    let thread = std::thread::Builder::new().spawn(move || {
+    let begun = std::thread::Builder::new().spawn(move || {
         // Nobody listens any more after an interrupt.
-        sender.send(work()).ok();
+        sender.send(caught(work)).ok();
     });
-    let thread = thread.map_err(|error| SimulationError::Thread {
+    begun.map_err(|error| SimulationError::Thread {
         reason: error.to_string(),
     })?;
     loop {
         match receiver.recv_timeout(LOOK) {
-            Ok(done) => return Ok(done),
+            Ok(Ok(done)) => return Ok(done),
+            Ok(Err(fault)) => fault.resume(),
             Err(RecvTimeoutError::Timeout) if stop() => return Err(SimulationError::Interrupted),
             Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => match thread.join() {
-                Err(panic) => std::panic::resume_unwind(panic),
-                Ok(()) => return Err(SimulationError::Interrupted),
-            },
+            Err(RecvTimeoutError::Disconnected) => return Err(SimulationError::Interrupted),
         }
     }
 }

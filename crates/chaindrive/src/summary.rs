@@ -416,6 +416,7 @@ impl Summary {
             loads_exchanged: self.turnover.loads,
             kinetic: self.turnover.kinetic(),
             rounding: self.turnover.rounding(),
+            teeth: self.mesh_frequency() * (self.ended - self.began.unwrap_or(self.ended)),
         }
     }
 

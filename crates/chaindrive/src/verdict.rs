@@ -262,14 +262,26 @@ fn not_finite(summary: &Summary) -> Option<Reason> {
 ///
 /// ```text
 /// |R| / max(D, 1e-4 M)    R: residual, D: losses, M: energy moved
-/// η = 1 − (D − R) / E     E: energy supplied
+/// η = 1 − (D − R) / E     E: energy supplied; and 1 − D/E, which is printed
 /// ```
 ///
 /// A free motion has no efficiency: its residual is judged by the energy that swings, and by that of its motion.
 fn ledger(ledger: &Ledger, steps: u64) -> Vec<Reason> {
     let missing = ledger.residual.abs();
+    // What is printed, or what it would be with the residual.
+    let printed = ledger.efficiency().map(|[efficiency, _]| efficiency);
+    let with_residual = 1.0 - (ledger.losses - ledger.residual) / ledger.supplied;
+    let greatest = |of: f64| {
+        printed
+            .map(|it| it.max(of))
+            .filter(|it| *it > MOST_EFFICIENCY)
+    };
+    let above_one = |efficiency: f64| Reason::EfficiencyAboveOne { efficiency };
     if missing <= ledger.rounding {
-        return Vec::new();
+        return greatest(f64::NEG_INFINITY)
+            .map(above_one)
+            .into_iter()
+            .collect();
     }
     if steps < LEAST_STEPS {
         return vec![Reason::TooShort { steps }];
@@ -293,10 +305,7 @@ fn ledger(ledger: &Ledger, steps: u64) -> Vec<Reason> {
             Reason::LossesWrong { of_losses }
         });
     }
-    let efficiency = 1.0 - (ledger.losses - ledger.residual) / ledger.supplied;
-    if ledger.efficiency().is_some() && efficiency > MOST_EFFICIENCY {
-        reasons.push(Reason::EfficiencyAboveOne { efficiency });
-    }
+    reasons.extend(greatest(with_residual).map(above_one));
     reasons
 }
 

@@ -78,3 +78,24 @@ fn mistakes(error: &SceneError) -> Vec<Mistake> {
     };
     error.problems.iter().map(mistake).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use chaindrive::caught;
+
+    use super::*;
+
+    #[test]
+    fn a_panic_is_told_as_any_failure() {
+        let fault = caught(|| panic!("seven rollers")).unwrap_err();
+        let trouble = Trouble::of(&Failure::Program(fault));
+        assert_eq!(trouble.exit_code, 70);
+        for part in [
+            "please report this",
+            "crates/cli/src/complaint.rs",
+            "seven rollers",
+        ] {
+            assert!(trouble.what.contains(part), "{}", trouble.what);
+        }
+    }
+}

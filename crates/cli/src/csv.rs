@@ -11,7 +11,9 @@ use std::time::{Duration, Instant};
 
 use chaindrive::channel::labels;
 use chaindrive::record::{Claim, Ending, EventColumn, Existing, WriteError};
-use chaindrive::{Channel, ContactEvent, EventKinds, EventTable, Recording, Simulation};
+use chaindrive::{
+    Channel, ContactEvent, EventKinds, EventTable, Recording, Simulation, cell, one_line,
+};
 
 use crate::failure::Failure;
 
@@ -95,7 +97,7 @@ impl CsvWriter {
             self.contact.push(event);
             let cells = EventColumn::ALL.map(|column| match column {
                 EventColumn::Kind => self.contact.kind.concat(),
-                EventColumn::Body => self.contact.body.concat(),
+                EventColumn::Body => cell(&self.contact.body.concat()).into_owned(),
                 EventColumn::Roller => self.contact.roller.iter().map(i64::to_string).collect(),
                 _ => self
                     .contact
@@ -144,7 +146,10 @@ pub(crate) fn incomplete(ending: &Ending) -> Option<String> {
         Ending::Interrupted => "interrupted",
         Ending::Failed(reason) => reason,
     };
-    Some(format!("# incomplete: {}\n", reason.replace('\n', "; ")))
+    Some(format!(
+        "# incomplete: {}\n",
+        one_line(&reason.replace('\n', "; "))
+    ))
 }
 
 /// The shortest last line of a table that failed. It is no longer than the one of a table that is running.
@@ -304,7 +309,8 @@ pub(crate) fn heading(simulation: &Simulation, channels: &[Channel]) -> Vec<Stri
 
 /// The heading of a column.
 pub(crate) fn named(name: &str, unit: Option<&str>) -> String {
-    unit.map_or_else(|| name.to_owned(), |unit| format!("{name} [{unit}]"))
+    let name = cell(name);
+    unit.map_or_else(|| name.to_string(), |unit| format!("{name} [{unit}]"))
 }
 
 pub(crate) fn failed(path: &Path, source: io::Error) -> Failure {

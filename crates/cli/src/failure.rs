@@ -6,10 +6,13 @@ use std::io::ErrorKind;
 use chaindrive::record::{ReadError, ResumeError, WriteError};
 use chaindrive::scene::SceneError;
 use chaindrive::sweep::SweepError;
-use chaindrive::{RequestError, SimulationError};
+use chaindrive::{ProgramError, RequestError, SimulationError};
 
 /// Exit code of bad input; also that of arguments the parser refuses.
 pub(crate) const BAD_INPUT: u8 = 2;
+
+/// Exit code of a mistake of the program; programs of Unix have it for their own ones.
+pub(crate) const PROGRAM: u8 = 70;
 
 /// Why a command did not do what was asked.
 #[derive(Debug, thiserror::Error)]
@@ -86,6 +89,10 @@ pub(crate) enum Failure {
     /// The user stopped the run.
     #[error("interrupted")]
     Interrupted,
+
+    /// The program made a mistake.
+    #[error(transparent)]
+    Program(ProgramError),
 }
 
 impl From<Infallible> for Failure {
@@ -206,6 +213,7 @@ impl Failure {
             Self::Write(_) | Self::File { .. } | Self::Taken { .. } => 3,
             Self::Distrusted { .. } => 4,
             Self::Overloaded { .. } => 5,
+            Self::Program(_) => PROGRAM,
             Self::Interrupted => crate::INTERRUPTED,
         }
     }

@@ -10,6 +10,7 @@
 //! | 3 | the result could not be written |
 //! | 4 | `--strict` was asked for, and the verdict on the result is `distrusted` |
 //! | 5 | `--strict=chain` or `--strict=all` was asked for, and the verdict on the chain is `fail` |
+//! | 70 | a mistake of the program; what is to be reported is told |
 //! | 130 | interrupted; a result keeps the samples or variants so far and says so |
 
 mod answer;
@@ -26,9 +27,11 @@ mod terminal;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use chaindrive::caught;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use complaint::{Complaint, Trouble};
+use failure::Failure;
 use terminal::{say, tell};
 
 use commands::{
@@ -47,6 +50,7 @@ Exit codes:
   3    the result could not be written
   4    --strict was asked for, and the verdict on the result is distrusted
   5    --strict=chain was asked for, and the verdict on the chain is fail
+  70   a mistake of chaindrive itself; what to report is told
   130  interrupted; a result keeps the samples or variants so far and says so";
 
 /// Simulates roller chain drives that are described in scene files.
@@ -112,7 +116,8 @@ pub fn drawn<A>(arguments: impl IntoIterator<Item = A>) -> Option<DrawingRequest
 where
     A: Into<OsString> + Clone,
 {
-    match Command::try_parse_from(arguments).ok()?.verb? {
+    let parsed = caught(|| Command::try_parse_from(arguments).ok()).ok()??;
+    match parsed.verb? {
         Verb::Replay(arguments) => arguments.movie(),
         Verb::Report(arguments) => Some(arguments.report()),
         Verb::Bench(arguments) => Some(arguments.diagram()),
@@ -137,25 +142,46 @@ where
 {
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
     let json = arguments.iter().any(|argument| argument == "--json");
+    let failed = |failure: &Failure| {
+        if json {
+            complained(Trouble::of(failure))
+        } else {
+            told(failure)
+        }
+    };
+    match caught(|| carry_out(arguments, json, interrupted)) {
+        Ok(Ok(code)) => code,
+        Ok(Err(failure)) => failed(&failure),
+        Err(fault) => failed(&Failure::Program(fault)),
+    }
+}
+
+/// Runs the command; the exit code where it is done, or its failure is told.
+fn carry_out(
+    arguments: Vec<OsString>,
+    json: bool,
+    interrupted: &dyn Fn() -> bool,
+) -> Result<u8, Failure> {
     let command = match Command::try_parse_from(arguments) {
         Ok(command) => command,
         Err(error) if json && error.use_stderr() => {
             let code = u8::try_from(error.exit_code()).unwrap_or(failure::BAD_INPUT);
-            return complained(Trouble::of_arguments(&error, code));
+            return Ok(complained(Trouble::of_arguments(&error, code)));
         }
         Err(error) => {
-            // Help goes to stdout, complaints to stderr; a closed pipe is nobody's problem.
-            let _ = error.print();
-            return u8::try_from(error.exit_code()).unwrap_or(failure::BAD_INPUT);
+            // Complaints go to stderr, and repeat what was typed; help goes to stdout, and a closed pipe is nobody's problem.
+            if error.use_stderr() {
+                say(error.render().to_string().trim_end());
+            } else {
+                let _ = error.print();
+            }
+            return Ok(u8::try_from(error.exit_code()).unwrap_or(failure::BAD_INPUT));
         }
     };
     let Some(verb) = &command.verb else {
-        return match lists::version(command.verbose) {
-            Ok(()) => 0,
-            Err(failure) => told(&failure),
-        };
+        return lists::version(command.verbose).map(|()| 0);
     };
-    let done = match verb {
+    match verb {
         Verb::Run(arguments) => run_command::run(arguments, interrupted),
         Verb::Resume(arguments) => resume::resume(arguments, interrupted),
         Verb::Replay(arguments) => replay::replay(arguments, interrupted),
@@ -175,23 +201,19 @@ where
         Verb::Catalogue(arguments) => lists::catalogue(arguments),
         Verb::Completion(arguments) => shell::completion(arguments, Command::command()),
         Verb::Man(arguments) => shell::man(arguments, Command::command()),
-    };
-    match done {
-        Ok(()) => 0,
-        Err(failure) if json => complained(Trouble::of(&failure)),
-        Err(failure) => told(&failure),
     }
+    .map(|()| 0)
 }
 
 /// Writes a failure as JSON.
 fn complained(error: Trouble) -> u8 {
     let code = error.exit_code;
     let text = serde_json::to_string_pretty(&Complaint { error });
-    say(answer::spelled(&text.unwrap_or_default()));
+    say(chaindrive::plain_json(&text.unwrap_or_default()));
     code
 }
 
-fn told(failure: &failure::Failure) -> u8 {
+fn told(failure: &Failure) -> u8 {
     tell(failure);
     failure.exit_code()
 }

@@ -26,5 +26,6 @@ pub(crate) fn tell(failure: &Failure) {
 
 /// Writes a text to stderr and ends the line.
 pub(crate) fn say(text: impl Display) {
-    eprintln!("{}", plain(&text.to_string()));
+    // Nobody hears where stderr is closed.
+    let _ = writeln!(io::stderr(), "{}", plain(&text.to_string()));
 }

@@ -21,7 +21,8 @@ pub enum Standard {
 }
 
 /// Kinds of messages, as importers filter them.
-const CATEGORIES: [(&str, &str); 2] = [
+const CATEGORIES: [(&str, &str); 3] = [
+    ("logStatusWarning", "energy that is missing"),
     (
         "logStatusError",
         "refused calls and motions that cannot go on",

@@ -140,10 +140,7 @@ impl Export {
     pub fn read(folder: &Path) -> Result<Self, ResourceError> {
         let read = |name: &str| {
             let path = folder.join(name);
-            std::fs::read_to_string(&path).map_err(|error| ResourceError {
-                path,
-                reason: error.to_string(),
-            })
+            chaindrive::scene::read_file(&path).map_err(|reason| ResourceError { path, reason })
         };
         let scene = read(SCENE)?;
         let facts = serde_json::from_str(&read(EXPORT)?);

@@ -1,5 +1,7 @@
 //! One drive among others: phases, values, steps, saved states.
 
+mod step;
+
 use std::ffi::CStr;
 use std::sync::Arc;
 
@@ -8,16 +10,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::fault::Fault;
 use crate::model::Model;
-use crate::signal::{CommunicationPoint, InputState, Signal};
-use crate::variable::{
-    Causality, EXTRAPOLATION, HELD, Kind, LINEAR, Role, SCENE, SHAFT_INPUT, Variable,
-};
-
-/// Difference of a communication point from the time of the drive that rounding may make, over the time and step.
-const SAME_TIME: f64 = 1e-9;
-
-/// Steps of the method in a communication step at most: at a microsecond each they would take eleven days.
-const MOST_STEPS: f64 = 1e12;
+use crate::signal::{InputState, Signal};
+use crate::variable::{Causality, EXTRAPOLATION, HELD, Kind, Role, SCENE, SHAFT_INPUT, Variable};
 
 /// Phases of an instance, as the standard has them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -88,9 +82,13 @@ struct InstanceState {
     signals: Vec<InputState>,
     shafts: Vec<i64>,
     extrapolation: i64,
-    /// Work of the inputs, and what of it has not arrived \[J\].
+    /// Work of the inputs before the last step, and what of all work has not arrived \[J\].
     work: f64,
     error: f64,
+    /// Wall time that a step may take \[s\]; zero: any.
+    patience: f64,
+    /// Energy missing that was told last \[J\].
+    told: f64,
 }
 
 impl SealedValue for SavedInstance {
@@ -134,6 +132,8 @@ impl Instance {
             extrapolation: HELD,
             work: 0.0,
             error: 0.0,
+            patience: 0.0,
+            told: 0.0,
         };
         Self {
             model,
@@ -176,7 +176,11 @@ impl Instance {
                 self.refresh();
                 self.values[index]
             }
-            Role::Work => self.at.work,
+            Role::Work => {
+                self.refresh();
+                self.at.work + self.work_of_the_last_step()
+            }
+            Role::Patience => self.at.patience,
             Role::WorkError => self.at.error,
             Role::Shaft(_) | Role::Extrapolation | Role::Constant => start.unwrap_or(f64::NAN),
         })
@@ -211,6 +215,15 @@ impl Instance {
     /// # Errors
     /// [`Fault`]: no such input, a value that is not finite, or not the time for it.
     pub fn set_real(&mut self, reference: u32, value: f64) -> Result<(), Fault> {
+        if self.variable(reference)?.role == Role::Patience {
+            self.may_set()?;
+            if !(value >= 0.0 && value.is_finite()) {
+                let refused = format!("step_patience: {value} s: it must be zero or positive");
+                return Err(Fault::new(refused));
+            }
+            self.at.patience = value;
+            return Ok(());
+        }
         let signal = self.signal(reference)?;
         if !value.is_finite() {
             let name = &self.variable(reference)?.name;
@@ -318,82 +331,6 @@ impl Instance {
     pub fn exit_initialization(&mut self) -> Result<(), Fault> {
         self.require(&[Phase::Initialization], "enter the initialization first")?;
         self.at.phase = Phase::Stepping;
-        Ok(())
-    }
-
-    /// Moves the drive on from a communication point \[s\] by a step \[s\].
-    ///
-    /// # Errors
-    /// [`Fault`]: not the time for it, another point than that where the drive stands, a step that is not positive, an input that cannot
-    /// act, or a motion that cannot go on: the phase is [`Phase::Failed`] then.
-    pub fn step(&mut self, from: f64, step: f64) -> Result<(), Fault> {
-        self.require(
-            &[Phase::Stepping],
-            "end the initialization first, or set a state of the time before",
-        )?;
-        let now = self.at.time;
-        if !(step > 0.0 && step.is_finite()) {
-            return Err(Fault::new(format!(
-                "a step of {step} s: it must be positive and finite"
-            )));
-        }
-        let off = (from - now).abs();
-        if off.is_nan() || off > SAME_TIME * (now.abs() + step) {
-            return Err(Fault::new(format!(
-                "the communication point is {from} s, and the drive stands at {now} s"
-            )));
-        }
-        let least = self.simulation.method().step();
-        if step / least > MOST_STEPS {
-            return Err(Fault::new(format!(
-                "a step of {step} s: it takes more than {MOST_STEPS:e} steps of {least} s"
-            )));
-        }
-        self.act(step)?;
-        let end = from + step;
-        let moved = self.simulation.move_to(end - self.at.begin, &|| false);
-        self.fresh = false;
-        if let Err(error) = moved {
-            self.at.phase = Phase::Failed;
-            return Err(Fault::new(format!("at {end} s: {error}")));
-        }
-        self.at.time = end;
-        self.at.step = step;
-        Ok(())
-    }
-
-    /// Sets what acts in the step to come.
-    fn act(&mut self, step: f64) -> Result<(), Fault> {
-        let model = Arc::clone(&self.model);
-        for (index, signal) in model.ports.signals.iter().enumerate() {
-            let held = &mut self.at.signals[index];
-            if signal
-                .shaft
-                .is_some_and(|(shaft, choice)| self.at.shafts[shaft] != choice)
-            {
-                held.end();
-                continue;
-            }
-            if !held.is_acting(signal.start) {
-                continue;
-            }
-            if !self.fresh {
-                self.refresh();
-            }
-            let point = CommunicationPoint {
-                last_step: self.at.step,
-                next_step: step,
-                linear: self.at.extrapolation == LINEAR,
-            };
-            let held = &mut self.at.signals[index];
-            let (courses, exchanged) = held.pass(signal, point, &self.values);
-            self.at.work += exchanged.work;
-            self.at.error += exchanged.error;
-            for course in courses {
-                let set = self.simulation.set(&signal.control, course);
-                set.map_err(|error| Fault::new(error.to_string()))?;
-            }
-        }
         Ok(())
     }
 

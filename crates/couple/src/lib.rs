@@ -22,6 +22,7 @@ mod ports;
 mod signal;
 mod variable;
 
+pub use chaindrive::{caught, plain};
 pub use description::Standard;
 pub use export::{Export, Facts, LIBRARY, ResourceError, RunFacts};
 pub use fault::Fault;

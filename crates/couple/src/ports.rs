@@ -35,8 +35,8 @@ const OUTPUTS: [Channel; 19] = [
     Channel::EnergyLosses,
 ];
 
-/// Channels that inputs look at.
-const GAUGES: [Channel; 8] = [
+/// Channels that inputs look at, and those of the ledger.
+const GAUGES: [Channel; 12] = [
     Channel::SprocketAngle,
     Channel::SprocketSpeed,
     Channel::SprocketTorque,
@@ -45,6 +45,10 @@ const GAUGES: [Channel; 8] = [
     Channel::ShaftAngle,
     Channel::ShaftSpeed,
     Channel::TensionerPosition,
+    Channel::SpanTension,
+    Channel::EnergyKinetic,
+    Channel::EnergyResidual,
+    Channel::EnergyFlows,
 ];
 
 /// All variables of a drive, and what is behind them.
@@ -114,6 +118,13 @@ impl Ports {
             held,
             Causality::Tunable,
             Role::Extrapolation,
+        );
+        builder.add(
+            "step_patience",
+            "wall time after which a step is given up and taken back; 0: never",
+            real("s", Some(0.0)),
+            Causality::Tunable,
+            Role::Patience,
         );
         for channel in outputs {
             builder.outputs(*channel);

@@ -198,6 +198,13 @@ impl InputState {
         (courses, exchanged)
     }
 
+    /// Work in the last step \[J\], until the next one begins.
+    pub(crate) fn work_so_far(&self, signal: &Signal, last_step: f64, values: &[f64]) -> f64 {
+        let place = signal.place.map_or(0.0, |index| values[index]);
+        let torque = signal.torques.iter().map(|index| values[*index]).sum();
+        self.exchanged(signal.kind, last_step, place, torque).work
+    }
+
     fn exchanged(&self, kind: Kind, h: f64, place: f64, torque: f64) -> ExchangedEnergy {
         let Some(last) = self.last else {
             return ExchangedEnergy::default();

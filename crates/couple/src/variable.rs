@@ -100,6 +100,8 @@ pub(crate) enum Role {
     /// The choice of a shaft, by its place among the shafts.
     Shaft(usize),
     Extrapolation,
+    /// The wall time that a step may take.
+    Patience,
     /// An output, by its place among all values that are read.
     Value(usize),
     /// Work of the inputs.

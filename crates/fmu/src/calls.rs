@@ -1,18 +1,21 @@
 //! Calls: numbers looked up, panics caught, refusals told.
 
-use std::any::Any;
 use std::ffi::{CString, c_int};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::TryLockError;
+use std::sync::atomic::Ordering;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
-use chaindrive_couple::{Fault, Instance, Model};
+use chaindrive_couple::{Fault, Instance, Model, caught};
 
 use crate::logger::Logger;
 use crate::units::{Handle, Unit, find, keep};
 
 /// Status of a call, the same numbers in both versions of the standard.
 pub(crate) const OK: c_int = 0;
+/// The call was made, and something is to be known about it.
+pub(crate) const WARNING: c_int = 1;
 /// The call was made, and did not do all.
 pub(crate) const DISCARD: c_int = 2;
 /// The call was refused.
@@ -20,9 +23,14 @@ pub(crate) const ERROR: c_int = 3;
 /// The instance is lost.
 pub(crate) const FATAL: c_int = 4;
 
-/// Category of refusals, and of calls that were made.
+/// Category of warnings, of refusals, and of calls that were made.
+const WARNED: &str = "logStatusWarning";
 const REFUSED: &str = "logStatusError";
 const CALLED: &str = "logAll";
+
+/// Wall time for which a step is waited for that is to be given up, and between two looks at it. A step looks every 50 ms.
+const PATIENCE: Duration = Duration::from_secs(5);
+const LOOK: Duration = Duration::from_millis(5);
 
 /// Makes a call on an instance.
 pub(crate) fn on(
@@ -30,12 +38,53 @@ pub(crate) fn on(
     function: &str,
     act: impl FnOnce(&Unit, &mut Instance) -> Result<(), Fault>,
 ) -> c_int {
+    warned(handle, function, |unit, instance| {
+        act(unit, instance).map(|()| None)
+    })
+}
+
+/// Moves an instance on; [`terminate`] gives it up.
+pub(crate) fn step(
+    handle: Handle,
+    function: &str,
+    [from, length]: [f64; 2],
+    then: impl FnOnce(&Instance),
+) -> c_int {
+    warned(handle, function, |unit, instance| {
+        unit.gives_up.store(false, Ordering::Relaxed);
+        let stop = || unit.gives_up.load(Ordering::Relaxed);
+        let stepped = instance.step_until(from, length, &stop);
+        then(instance);
+        stepped
+    })
+}
+
+/// Ends the simulation. A step that another thread waits for is given up first.
+pub(crate) fn terminate(handle: Handle, function: &str) -> c_int {
+    if let Some(unit) = find(handle) {
+        let begin = Instant::now();
+        while matches!(unit.instance.try_lock(), Err(TryLockError::WouldBlock))
+            && begin.elapsed() < PATIENCE
+        {
+            unit.gives_up.store(true, Ordering::Relaxed);
+            sleep(LOOK);
+        }
+    }
+    on(handle, function, |_, instance| instance.terminate())
+}
+
+/// Makes a call that may have something to be known about.
+fn warned(
+    handle: Handle,
+    function: &str,
+    act: impl FnOnce(&Unit, &mut Instance) -> Result<Option<String>, Fault>,
+) -> c_int {
     let Some(unit) = find(handle) else {
         // There is nobody else to tell it to.
         eprintln!("{function}: no instance has this handle; it was never made, or is freed");
         return ERROR;
     };
-    let made = catch_unwind(AssertUnwindSafe(|| match unit.instance.try_lock() {
+    let made = caught(|| match unit.instance.try_lock() {
         Ok(mut instance) => act(&unit, &mut instance).map_err(|fault| (ERROR, fault.0)),
         Err(TryLockError::WouldBlock) => {
             let busy = "another thread is in a call of this instance";
@@ -45,16 +94,21 @@ pub(crate) fn on(
             let lost = "the instance was lost in a call before; free it";
             Err((FATAL, lost.to_owned()))
         }
-    }));
+    });
     let (status, message) = match made {
-        Ok(Ok(())) => {
+        Ok(Ok(Some(warning))) => {
+            unit.logger
+                .tell(WARNING, WARNED, &format!("{function}: {warning}"));
+            return WARNING;
+        }
+        Ok(Ok(None)) => {
             if unit.logger.follows() {
                 unit.logger.tell(OK, CALLED, function);
             }
             return OK;
         }
         Ok(Err(refused)) => refused,
-        Err(panic) => (FATAL, said(panic.as_ref())),
+        Err(fault) => (FATAL, fault.to_string()),
     };
     // The instance is free again: an importer may call it from its logger.
     unit.logger
@@ -74,7 +128,7 @@ pub(crate) fn instantiate(
     resources: Option<&Path>,
     logger: Logger,
 ) -> Handle {
-    let made = catch_unwind(|| {
+    let made = caught(|| {
         let resources = resources.ok_or("the folder of the resources is missing")?;
         let token = token.ok_or("the token of modelDescription.xml is missing")?;
         let model = Model::of_resources(resources).map_err(|error| error.to_string())?;
@@ -90,7 +144,7 @@ pub(crate) fn instantiate(
     let message = match made {
         Ok(Ok(instance)) => return keep(instance, logger),
         Ok(Err(reason)) => reason,
-        Err(panic) => said(panic.as_ref()),
+        Err(fault) => fault.to_string(),
     };
     logger.tell(ERROR, REFUSED, &format!("{function}: {message}"));
     std::ptr::null_mut()
@@ -108,12 +162,16 @@ pub(crate) fn named(name: Option<&std::ffi::CStr>) -> CString {
     name.unwrap_or(c"drive").to_owned()
 }
 
-/// What a panic said.
-fn said(panic: &(dyn Any + Send)) -> String {
-    let text = panic.downcast_ref::<String>().map(String::as_str);
-    let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
-    format!(
-        "a mistake of chaindrive, please report it: {}",
-        text.unwrap_or("no message")
-    )
+/// Lets an instance go.
+pub(crate) fn free(function: &str, handle: Handle) {
+    if handle.is_null() {
+        return;
+    }
+    match caught(|| crate::units::free(handle)) {
+        Ok(true) => {}
+        Ok(false) => {
+            eprintln!("{function}: no instance has this handle; it is freed already");
+        }
+        Err(fault) => eprintln!("{function}: {fault}"),
+    }
 }

@@ -73,10 +73,18 @@ functions! { calls:
     ) = |_, instance| instance.start_at(start_time);
     /// Begins the initialization.
     fmi2EnterInitializationMode() = |_, instance| instance.enter_initialization(instance.time());
-    /// Moves on by a step.
-    fmi2DoStep(
-        current_communication_point: f64, communication_step_size: f64, _no_set_state_prior: c_int
-    ) = |_, instance| instance.step(current_communication_point, communication_step_size);
+}
+
+/// Moves on by a step.
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2DoStep(
+    instance: Handle,
+    current_communication_point: f64,
+    communication_step_size: f64,
+    _no_set_state_prior: c_int,
+) -> c_int {
+    let step = [current_communication_point, communication_step_size];
+    crate::calls::step(instance, "fmi2DoStep", step, |_| {})
 }
 
 functions! { values:

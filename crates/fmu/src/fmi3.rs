@@ -16,7 +16,7 @@ use chaindrive_couple::Instance;
 
 pub use absent::*;
 
-use crate::calls::{instantiate, named, on};
+use crate::calls::{instantiate, named};
 use crate::logger::{Listener, Logger, Logger3};
 use crate::pointers::{give, text};
 use crate::states;
@@ -95,14 +95,13 @@ pub unsafe extern "C" fn fmi3DoStep(
     early_return: *mut u8,
     last_successful_time: *mut f64,
 ) -> c_int {
-    on(instance, "fmi3DoStep", |_, instance| {
-        let stepped = instance.step(current_communication_point, communication_step_size);
+    let step = [current_communication_point, communication_step_size];
+    crate::calls::step(instance, "fmi3DoStep", step, |instance| {
         for flag in [event_handling_needed, terminate_simulation, early_return] {
             // SAFETY: the caller promises room for a flag, or null.
             unsafe { give(flag, 0) };
         }
         // SAFETY: the caller promises room for a time, or null.
         unsafe { give(last_successful_time, instance.time()) };
-        stepped
     })
 }

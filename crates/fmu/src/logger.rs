@@ -3,6 +3,8 @@
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use chaindrive_couple::plain;
+
 /// Logger of FMI 2.0: environment, name of the instance, status, category, format, values.
 pub(crate) type Logger2 =
     unsafe extern "C" fn(*mut c_void, *const c_char, c_int, *const c_char, *const c_char, ...);
@@ -57,8 +59,8 @@ impl Logger {
 
     /// Tells a message, to the standard error output where nobody listens to a refusal.
     pub(crate) fn tell(&self, status: c_int, category: &str, message: &str) {
-        let [category, message] = [category, message]
-            .map(|text| CString::new(text.replace('\0', " ")).unwrap_or_default());
+        let [category, message] =
+            [category, message].map(|text| CString::new(&*plain(text)).unwrap_or_default());
         match self.listener {
             Listener::Two(Some(listen)) => {
                 // SAFETY: the function of the importer, with texts that live until it returns; the format takes one text.

@@ -228,7 +228,7 @@ impl Pool {
                         null_mut(),
                         &raw mut reached,
                     );
-                    if status == calls::OK {
+                    if status <= calls::WARNING {
                         self.time = reached;
                     }
                     status

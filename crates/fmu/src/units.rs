@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::ffi::c_void;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use chaindrive_couple::{Instance, SavedInstance};
@@ -19,6 +19,8 @@ pub(crate) struct Unit {
     pub(crate) logger: Logger,
     /// States that the importer keeps.
     pub(crate) states: Mutex<HashMap<usize, Arc<SavedInstance>>>,
+    /// Whether the step that goes on is to be given up.
+    pub(crate) gives_up: AtomicBool,
 }
 
 static UNITS: RwLock<Option<HashMap<usize, Arc<Unit>>>> = RwLock::new(None);
@@ -43,6 +45,7 @@ pub(crate) fn keep(instance: Instance, logger: Logger) -> Handle {
         instance: Mutex::new(instance),
         logger,
         states: Mutex::default(),
+        gives_up: AtomicBool::new(false),
     };
     let mut units = UNITS.write().unwrap_or_else(PoisonError::into_inner);
     units.get_or_insert_default().insert(number, Arc::new(unit));

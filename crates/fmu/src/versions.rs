@@ -37,17 +37,18 @@ macro_rules! functions {
         /// Lets an instance go; null is no mistake.
         #[unsafe(no_mangle)]
         pub extern "C" fn $free(instance: $crate::units::Handle) {
-            if !instance.is_null() && !$crate::units::free(instance) {
-                let name = stringify!($free);
-                eprintln!("{name}: no instance has this handle; it is freed already");
-            }
+            $crate::calls::free(stringify!($free), instance);
+        }
+
+        /// Ends the simulation; a step that goes on is given up.
+        #[unsafe(no_mangle)]
+        pub extern "C" fn $terminate(instance: $crate::units::Handle) -> std::ffi::c_int {
+            $crate::calls::terminate(instance, stringify!($terminate))
         }
 
         $crate::versions::functions! { calls:
             /// Ends the initialization.
             $exit() = |_, instance| instance.exit_initialization();
-            /// Ends the simulation.
-            $terminate() = |_, instance| instance.terminate();
             /// Goes back to where the instance was made.
             $reset() = |_, instance| { instance.reset(); Ok(()) };
             /// Keeps the state.
@@ -119,8 +120,8 @@ pub(crate) unsafe fn follow(
     count: usize,
     categories: *const *const c_char,
 ) -> Result<(), Fault> {
-    // SAFETY: by the contract of this function; there are two categories.
-    let categories = unsafe { array(categories, count, 2) }?;
+    // SAFETY: by the contract of this function; there are three categories.
+    let categories = unsafe { array(categories, count, 3) }?;
     let among = categories.iter().any(|category| {
         // SAFETY: by the contract of this function.
         unsafe { text(*category) }.is_some_and(|it| it == c"logAll")

@@ -77,6 +77,11 @@ impl Closing {
         check_pitch(wheels, pitch)?;
         GeometryError::finite("tooth phase", phase)?;
         let route = Route::taut(wheels)?;
+        let taut = route.pitches(pitch);
+        if taut > MOST_PITCHES {
+            let most = MOST_PITCHES;
+            return Err(GeometryError::TooLong { taut, most });
+        }
         let n = wheels.len();
 
         let first = &wheels[0];
@@ -137,7 +142,11 @@ impl Closing {
         let last = whole(distance / pitch);
         spans.push(count(last));
 
-        let links = spans.iter().sum::<u32>() + seats.iter().map(|seat| seat.pitches).sum::<u32>();
+        let counts = spans
+            .iter()
+            .copied()
+            .chain(seats.iter().map(|seat| seat.pitches));
+        let links = counts.fold(0, u32::saturating_add);
         let residual = distance - last as f64 * pitch;
         Ok(Self {
             seats,
@@ -208,6 +217,9 @@ impl Closing {
         Ok(places)
     }
 }
+
+/// Longest route that is laid, in pitches: ten times the longest chain, and a second of work where rails have a bend of a kilometre.
+const MOST_PITCHES: f64 = 1e6;
 
 /// Refuses a pitch that does not belong to the wheels.
 fn check_pitch(wheels: &[Wheel], pitch: f64) -> Result<(), GeometryError> {
@@ -393,8 +405,8 @@ impl Lattice<'_> {
         let (mut leaves, mut arrives) = (leaving.max(0), arriving);
         let mut best = None;
         let mut deepest = -self.half.max(to.half);
-        // Nobody is a full turn of both wheels off.
-        for _ in 0..whole(TAU / self.half + TAU / to.half) {
+        // Nobody is a full turn of both wheels off, nor farther than any route is long.
+        for _ in 0..whole((TAU / self.half + TAU / to.half).min(MOST_PITCHES)) {
             let span = to.at(arrives) - self.at(leaves);
             let direction = span.y.atan2(span.x);
             let beyond = [(self, leaves), (to, arrives)]

@@ -148,6 +148,12 @@ pub enum GeometryError {
     #[error("{}", no_seat(&number, [*.from, *.to]))]
     NoSeat { from: usize, to: usize },
 
+    /// A route of more links than anybody lays, which would take for ever.
+    #[error(
+        "the taut route takes {taut:e} links, and at most {most:e} are laid; are places and pitch given in their units? A bare number is in metres"
+    )]
+    TooLong { taut: f64, most: f64 },
+
     /// The number of links does not fit the wheels.
     #[error("{}", does_not_close(&number, self))]
     DoesNotClose {

@@ -5,14 +5,16 @@ use std::path::Path;
 use chaindrive::record::{ReadError, ResumeError, WriteError};
 use chaindrive::scene::SceneError;
 use chaindrive::sweep::SweepError;
-use chaindrive::{RequestError, RunError, SealError, SimulationError, SnapshotError};
+use chaindrive::{ProgramError, RequestError, RunError, SealError, SimulationError, SnapshotError};
 use chaindrive_contact::ParameterError;
 use chaindrive_couple::{ModelError, PackageError};
 use chaindrive_geometry::GeometryError;
 use chaindrive_integrate::IntegrationError;
 use chaindrive_mechanics::AssemblyError;
 use pyo3::exceptions::{PyFileNotFoundError, PyValueError};
-use pyo3::{PyErr, Python};
+use pyo3::panic::PanicException;
+use pyo3::prelude::*;
+use pyo3::types::{PyCFunction, PyDict, PyTuple};
 
 /// The exception classes; their rust names would clash with those of the errors.
 mod python {
@@ -20,6 +22,7 @@ mod python {
     pyo3::import_exception!(chaindrive.errors, ChaindriveError);
     pyo3::import_exception!(chaindrive.errors, IntegrationError);
     pyo3::import_exception!(chaindrive.errors, ParameterError);
+    pyo3::import_exception!(chaindrive.errors, ProgramError);
     pyo3::import_exception!(chaindrive.errors, ResumeError);
     pyo3::import_exception!(chaindrive.errors, SceneError);
     pyo3::import_exception!(chaindrive.errors, SimulationError);
@@ -59,6 +62,24 @@ impl IntoException for SceneError {
             .collect();
         python::SceneError::new_err((message, problems, self.source_name))
     }
+}
+
+/// Has every panic reach Python as an error of the package. PyO3 makes an exception of its own of it, which ends the interpreter; here
+/// the class of that exception makes ours instead, so that no call can be forgotten.
+pub(crate) fn net_panics(py: Python<'_>) -> PyResult<()> {
+    chaindrive::catch_everywhere();
+    let make = |given: &Bound<'_, PyTuple>, _: Option<&Bound<'_, PyDict>>| -> PyResult<Py<PyAny>> {
+        let (py, said) = (given.py(), given.get_item(1)?);
+        // Python 3.11 asks again with what it was given.
+        if said.is_instance_of::<python::ProgramError>() {
+            return Ok(said.unbind());
+        }
+        let fault = ProgramError::last(&said.to_string());
+        let error = python::ProgramError::new_err((fault.to_string(),));
+        Ok(error.into_value(py).into_any())
+    };
+    let make = PyCFunction::new_closure(py, None, None, make)?;
+    py.get_type::<PanicException>().setattr("__new__", make)
 }
 
 /// A simulation that is asked for something while another thread moves it.

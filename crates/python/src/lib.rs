@@ -69,8 +69,8 @@ mod core {
     use crate::replay::{replay, replay_selection};
     #[pymodule_export]
     use crate::run::{
-        adaptive_methods, channels, inspect, is_being_written, methods, plain, resume, simulate,
-        take_over,
+        adaptive_methods, cell, channels, inspect, is_being_written, methods, plain, resume,
+        simulate, take_over,
     };
 
     #[pymodule_export]
@@ -94,6 +94,7 @@ mod core {
             ("chaindrive_profile", build.profile),
             ("instruction_set", &instruction_set),
         ];
+        crate::errors::net_panics(module.py())?;
         module.add("__build__", &build.id)?;
         module.add("_origin", origin.into_py_dict(module.py())?)
     }
@@ -109,6 +110,17 @@ mod core {
             it.overwrite,
             it.quiet,
         ))
+    }
+
+    /// Panics, so that tests see what becomes of it: here, or in a thread that the caller waits for.
+    #[pyfunction]
+    fn _panic(py: Python<'_>, elsewhere: bool) -> PyResult<()> {
+        let fail = || -> () { panic!("as asked for") };
+        if elsewhere {
+            return crate::signals::patiently(py, fail);
+        }
+        fail();
+        Ok(())
     }
 
     /// Runs the command line with its arguments, the program's name first; returns the exit code.

@@ -266,6 +266,12 @@ pub(crate) fn plain(text: &str) -> Cow<'_, str> {
     chaindrive::plain(text)
 }
 
+/// A text as a cell of CSV.
+#[pyfunction]
+pub(crate) fn cell(text: &str) -> Cow<'_, str> {
+    chaindrive::cell(text)
+}
+
 /// Removes the folder of a writer that another user left beside a result.
 #[pyfunction]
 pub(crate) fn take_over(path: PathBuf) -> PyResult<()> {

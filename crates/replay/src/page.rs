@@ -2,6 +2,7 @@
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use chaindrive::plain_json;
 use serde::Serialize;
 
 use crate::animation::{Animation, Chain, PageTexts};
@@ -101,7 +102,7 @@ pub fn page(film: &Animation) -> String {
     };
     let index = serde_json::to_string(&index).expect("texts and numbers make JSON");
     // Within a script only `</` and `<!--` end or change it; neither is left.
-    let index = index.replace('<', "\\u003c");
+    let index = plain_json(&index).replace('<', "\\u003c");
     let title = if film.about.title.is_empty() {
         "Chain drive"
     } else {

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from os import PathLike, fspath
+from pathlib import Path
+from stat import S_ISREG
 from typing import Any
 
 import numpy as np
@@ -19,6 +21,8 @@ from chaindrive.extras import extra
 __all__ = ["read_dxf", "write_dxf"]
 
 _WHAT = "drawings in DXF"
+# Of a drawing that is read [bytes]: room for a whole engine.
+_LARGEST = 256 << 20
 # Drawings are written in millimetres.
 _PER_METRE = 1e3
 _CURVES = {"LINE", "ARC", "CIRCLE", "LWPOLYLINE", "POLYLINE", "SPLINE", "ELLIPSE"}
@@ -66,6 +70,10 @@ def read_dxf(
     """
     place = fspath(path)
     ezdxf = extra("ezdxf", _WHAT)
+    about = Path(place).stat()
+    if not S_ISREG(about.st_mode) or about.st_size > _LARGEST:
+        message = f"{place}: no file of at most {_LARGEST >> 20} MiB"
+        raise ParameterError(message, "path", "a drawing in DXF")
     try:
         return _curves_of(ezdxf.readfile(place), layers, unit, tolerance, gap, place)
     except (ParameterError, FileNotFoundError):

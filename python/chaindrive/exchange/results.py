@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from chaindrive import _core
 from chaindrive._core import NewFile
 from chaindrive.errors import ParameterError
 from chaindrive.extras import extra
@@ -117,8 +118,16 @@ def _write_csv(file: Path, columns: list[_Column], _: dict[str, Any]) -> None:
     import pandas as pd
 
     # Every column under its own heading: names of bodies may repeat.
-    table = pd.concat([pd.Series(values, name=heading) for heading, values, _ in columns], axis=1)
+    told = [(_core.cell(heading), _cells(values)) for heading, values, _ in columns]
+    table = pd.concat([pd.Series(values, name=heading) for heading, values in told], axis=1)
     table.to_csv(file, index=False)
+
+
+def _cells(values: Any) -> Any:
+    """Return texts as no spreadsheet takes them for formulas."""
+    if values.dtype.kind not in "OUST":
+        return values
+    return [_core.cell(it) if isinstance(it, str) else it for it in values.tolist()]
 
 
 def _write_parquet(file: Path, columns: list[_Column], attributes: dict[str, Any]) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 
 from chaindrive import analysis
 from chaindrive.errors import ParameterError
+from chaindrive.extras import extra
 from chaindrive.plot.axes import colour_bar, drawing, legend_below
 from chaindrive.plot.docstrings import completed
 from chaindrive.plot.scheme import CURVES, LIMIT, MARK, STEEL
@@ -250,13 +251,13 @@ def elongation(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) ->
 @completed(chain=True)
 def rainflow(source: xr.Dataset, *, ax: Axes | None = None, **options: Any) -> Axes:
     """Draw the load cycles of a link: their number by range and mean."""
-    from matplotlib.colors import LogNorm
+    norm_of = extra("matplotlib.colors", "plots").LogNorm
 
     found = analysed(source, analysis.rainflow, "cycles", options, {"chain": chain_of})
     with drawing(ax) as ax:
         cycles = found["cycles"].transpose("tension_mean", "tension_range")
         filled = np.ma.masked_less_equal(cycles.to_numpy(), 0.0)
-        norm = LogNorm(float(filled.min()), float(filled.max())) if filled.count() else None
+        norm = norm_of(float(filled.min()), float(filled.max())) if filled.count() else None
         factor, unit = in_trade("N", found["tension_mean"])
         mesh = ax.pcolormesh(
             factor * found["tension_range"],

@@ -5,6 +5,8 @@ use std::fmt::Write;
 use chaindrive_geometry::{ArcSpline, Piece, Point, Vector};
 use chaindrive_mechanics::Placement;
 
+use crate::terminal_text::one_line;
+
 /// A length in millimetres, to a tenth of a micrometre.
 pub(super) fn millimetres(metres: f64) -> String {
     let text = format!("{:.4}", metres * 1e3);
@@ -85,7 +87,8 @@ pub(super) fn id(parts: &[&str]) -> String {
 
 /// A text as XML has it, between tags.
 pub fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
+    one_line(text)
+        .replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
 }

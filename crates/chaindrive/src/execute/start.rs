@@ -6,7 +6,7 @@
 //!                                   └───── a smaller error asked for ◄─┘  missed
 //! ```
 
-use chaindrive_integrate::Method;
+use chaindrive_integrate::{IntegrationError, Method};
 use chaindrive_mechanics::{Assembled, Drive};
 
 use super::RunError;
@@ -15,7 +15,7 @@ use crate::precision::{Choice, Estimate, ShortRuns, choose_with, estimate};
 use crate::record::Provenance;
 use crate::run_in::{Onlooker, RecordStart, check_sprocket, check_turns, record_start};
 use crate::summary::Summary;
-use crate::{Channel, Request, RunIn, Simulation, SimulationError};
+use crate::{Channel, Request, Run, RunIn, Simulation, SimulationError};
 
 /// A drive as it was assembled, with the method and step of its run.
 pub(super) struct Setup {
@@ -110,8 +110,9 @@ impl Setup {
     }
 
     /// The simulation of the assembled drive.
-    pub(super) fn simulation(&self) -> Result<Simulation, SimulationError> {
-        Simulation::from_assembled(self.assembled.clone(), &self.provenance.run)
+    pub(super) fn simulation(&mut self) -> Result<Simulation, SimulationError> {
+        let Provenance { run, choice, .. } = &mut self.provenance;
+        begin(self.assembled.clone(), run, choice.is_some())
     }
 
     /// Runs the drive in, and checks the choice of method and step there.
@@ -173,19 +174,15 @@ impl Setup {
         let going_on = record.simulation.filter(is_stable);
         let checked = provenance.run.step;
         let run = &mut provenance.run;
-        if let Some(simulation) = &going_on {
+        let simulation = if let Some(simulation) = going_on {
             run.step = Some(simulation.method().step());
-        } else if provenance.choice.is_some() {
-            let longest = longest(run.method(&record.start.system));
-            run.step = run.step.map(|step| step.min(longest));
-        }
+            simulation
+        } else {
+            begin(record.start, run, provenance.choice.is_some())?
+        };
         // An estimate is that of one step.
         estimate = estimate.filter(|_| provenance.run.step == checked);
         short_runs.keep_for(&provenance.run);
-        let simulation = match going_on {
-            Some(simulation) => simulation,
-            None => Simulation::from_assembled(record.start, &provenance.run)?,
-        };
         Ok(RunState {
             summary: Summary::new(&simulation),
             drive: self.drive,
@@ -195,6 +192,24 @@ impl Setup {
             estimate,
         })
     }
+}
+
+/// A simulation from here on. A step that was chosen elsewhere is shortened to what is stable here: nobody asked for it.
+fn begin(
+    assembled: Assembled,
+    run: &mut Run,
+    is_chosen: bool,
+) -> Result<Simulation, SimulationError> {
+    let begun = Simulation::from_assembled(assembled.clone(), run);
+    let Err(SimulationError::Integration(IntegrationError::StepTooLarge { limit, .. })) = begun
+    else {
+        return begun;
+    };
+    if !is_chosen {
+        return begun;
+    }
+    run.step = Some(limit);
+    Simulation::from_assembled(assembled, run)
 }
 
 /// Estimates the error of the chosen run from t = 0 on, where the drive is in another state than the choice saw. If that is more than the

@@ -7,6 +7,7 @@ use super::compare::{Errors, Number};
 use super::work::{Row, Table};
 use crate::figure::percent;
 use crate::sheet::{NAMES, aligned, lines};
+use crate::terminal_text::cell as text_cell;
 
 macro_rules! numbers {
     ($($name:literal, $unit:literal, $text:literal, $value:expr;)*) => {
@@ -77,7 +78,7 @@ impl Table {
             }
             let cells = numbers.iter().map(|number| cell(number.value));
             let name = row.variant.stepping.name().to_owned();
-            let remark = row.remark().replace('\n', "; ");
+            let remark = text_cell(&row.remark().replace('\n', "; ")).into_owned();
             writer.write_record([name].into_iter().chain(cells).chain([remark]))?;
         }
         let remarks = [self.reference.describe(), self.check.describe()].join(" against ");

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::text_span::TextSpan;
-use crate::plain;
+use crate::one_line;
 
 /// One thing to mend in a scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,16 +23,16 @@ pub struct Problem {
 impl Problem {
     pub(crate) fn new(path: &str, place: Option<TextSpan>, message: impl Into<String>) -> Self {
         Self {
-            path: plain(path).into_owned(),
+            path: one_line(path).into_owned(),
             place,
-            message: plain(&message.into()).into_owned(),
+            message: one_line(&message.into()).into_owned(),
             hint: None,
             excerpt: None,
         }
     }
 
     pub(crate) fn hint(mut self, hint: impl Into<String>) -> Self {
-        self.hint = Some(plain(&hint.into()).into_owned());
+        self.hint = Some(one_line(&hint.into()).into_owned());
         self
     }
 }
@@ -124,7 +124,7 @@ impl SceneError {
     pub(crate) fn new(source_name: &str, mut problems: Vec<Problem>) -> Self {
         problems.sort_by_key(|problem| problem.place);
         Self {
-            source_name: plain(source_name).into_owned(),
+            source_name: one_line(source_name).into_owned(),
             problems,
             omitted: 0,
         }

@@ -3,7 +3,9 @@
 //! A tree is built, copied and dropped by recursion, and every value of a text takes some hundred bytes
 //! on the way to a drive. Both are therefore bounded by counting, before anything is built.
 
+use std::fs::File;
 use std::io::Read;
+use std::path::Path;
 
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
@@ -20,6 +22,15 @@ const DEEPEST: usize = 32;
 
 /// Most values of a text: a table of half a million pairs.
 const MOST_VALUES: usize = 1_000_000;
+
+/// Reads a file of text of at most 16 MiB, which is no scene.
+///
+/// # Errors
+/// Why it cannot be read, without its name.
+pub fn read_file(path: &Path) -> Result<String, String> {
+    let file = File::open(path).map_err(|error| error.to_string())?;
+    read_text(file, "the file").map_err(|problem| problem.message)
+}
 
 /// Reads a text of at most [`LARGEST`] bytes; `what` is what messages call its source.
 pub(crate) fn read_text(source: impl Read, what: &str) -> Result<String, Problem> {

@@ -84,6 +84,7 @@ pub use datum::Datum;
 pub use diff::{Difference, diff};
 pub use error::{Problem, SceneError};
 pub use format::schema;
+pub use limits::read_file;
 pub use presets::presets;
 pub use schema::RunDefaults;
 pub use text_span::TextSpan;

@@ -7,7 +7,7 @@ use super::error::Problem;
 use super::limits;
 use super::path::{push_step, steps};
 use super::text_span::{Lines, TextSpan};
-use crate::terminal_text::is_command;
+use crate::terminal_text::is_strange;
 use crate::terminal_text::shorten;
 
 /// A value and its place in the text.
@@ -54,7 +54,7 @@ impl Value {
 }
 
 impl Node {
-    /// Texts and keys with control characters. Scenes come from anywhere, and messages, results and drawings show their texts.
+    /// Texts and keys with control characters and the like. Scenes come from anywhere, and messages, results and drawings show their texts.
     pub(crate) fn control_characters(&self) -> Vec<Problem> {
         let mut found = Vec::new();
         self.find_control_characters("", &mut found);
@@ -62,9 +62,12 @@ impl Node {
     }
 
     fn find_control_characters(&self, path: &str, found: &mut Vec<Problem>) {
-        let speaks = |text: &str| text.contains(is_command);
+        let speaks = |text: &str| text.contains(is_strange);
         let problem = |path: &str, place: Option<TextSpan>, what: &str, text: &str| {
-            let message = format!("{what} \"{}\" has control characters", shorten(text));
+            let message = format!(
+                "{what} \"{}\" has control characters, line feeds, tabs or characters that are not seen",
+                shorten(text)
+            );
             Problem::new(path, place, message).hint("leave them out")
         };
         match &self.value {

@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 
 use super::Simulation;
-use crate::SimulationError;
 use crate::interruptible::LOOK;
+use crate::{SimulationError, caught};
 
 /// Moves simulations on to a time \[s\], on all cores; what came of each, in their order.
 ///
@@ -36,11 +36,13 @@ pub fn step_many(
     let stopped = AtomicBool::new(false);
     let (sender, receiver) = channel();
     let mut results: Vec<_> = simulations.iter().map(|_| Ok(())).collect();
+    let mut fault = None;
     rayon::in_place_scope(|scope| {
         for (index, simulation) in simulations.iter_mut().enumerate() {
             let (sender, stopped) = (sender.clone(), &stopped);
             scope.spawn(move |_| {
-                let moved = simulation.move_to(t, &|| stopped.load(Ordering::Relaxed));
+                let stop = || stopped.load(Ordering::Relaxed);
+                let moved = caught(|| simulation.move_to(t, &stop));
                 // Whoever waits takes all of them.
                 let _ = sender.send((index, moved));
             });
@@ -48,7 +50,8 @@ pub fn step_many(
         drop(sender);
         loop {
             match receiver.recv_timeout(LOOK) {
-                Ok((index, moved)) => results[index] = moved,
+                Ok((index, Ok(moved))) => results[index] = moved,
+                Ok((_, Err(found))) => fault = Some(found),
                 Err(RecvTimeoutError::Timeout) => {
                     stopped.fetch_or(stop(), Ordering::Relaxed);
                 }
@@ -56,5 +59,8 @@ pub fn step_many(
             }
         }
     });
+    if let Some(fault) = fault {
+        fault.resume();
+    }
     results
 }

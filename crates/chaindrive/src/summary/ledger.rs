@@ -30,6 +30,8 @@ pub struct Ledger {
     pub kinetic: f64,
     /// Residual that rounding may leave \[J\].
     pub rounding: f64,
+    /// Teeth that have passed at the sprocket where most do \[–\]; not a number where that is not known.
+    pub teeth: f64,
 }
 
 /// Uncertainty of an efficiency, by where within a swing the record ends, beyond which there is none. *Assumed*.
@@ -37,6 +39,9 @@ const TO_AND_FRO: f64 = 0.1;
 /// Share of the energy supplied that somebody has to take out before the rest of it is an efficiency. *Assumed*: less is rounding and
 /// the run-up, and what a drive that serves nobody keeps in its motion is not its use.
 const TAKEN: f64 = 1e-6;
+/// Teeth that have to pass before there is an efficiency. *Assumed*: losses are those of meshes, and springs in which friction stands
+/// take and give until the first of them is over.
+const LEAST_TEETH: f64 = 3.0;
 
 impl Ledger {
     /// Share of the energy supplied that is not lost, and how uncertain it is; none where [`unknown`](Self::unknown) says why.
@@ -68,11 +73,26 @@ impl Ledger {
             Some("nobody puts energy in")
         } else if self.idles() {
             Some("nobody takes energy out")
+        } else if self.teeth < LEAST_TEETH {
+            Some("fewer than three teeth have passed: take a longer record")
+        } else if self.losses < -self.rounding {
+            Some(
+                "springs in which friction stands gave back more than was lost: take a longer record",
+            )
+        } else if self.kept() > self.delivered {
+            Some(
+                "more energy went into or came out of motion, height and springs than was taken out: run it in, or take a longer record",
+            )
         } else if swings {
             Some("too much energy goes to and fro for this record: take a longer one")
         } else {
             None
         }
+    }
+
+    /// Energy that came into motion, height and springs, or out of them, in magnitude \[J\].
+    fn kept(&self) -> f64 {
+        (self.supplied - self.delivered - self.losses).abs()
     }
 
     /// Whether nothing takes energy out: all that is supplied is lost, or stays in motion, height and springs.

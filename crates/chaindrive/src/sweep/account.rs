@@ -1,6 +1,5 @@
 //! Account of one variant: statistics, and channels where they are asked for.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use chaindrive_mechanics::EventKinds;
@@ -16,7 +15,7 @@ use crate::statistic::{KIND, SPAN, SPROCKET, Statistic};
 use crate::verdict::WrittenVerdict;
 use crate::{
     Channel, End, Recording, Report, Request, RequestError, RunError, Scene, Settings, Simulation,
-    SimulationError, Sink, Stepping, Stop,
+    SimulationError, Sink, Stepping, Stop, caught,
 };
 
 /// A statistic or a channel.
@@ -154,18 +153,11 @@ impl Sink for KeptChannels {
 
 /// Whatever goes wrong is the outcome, a panic included: the other variants are not its fault.
 pub(super) fn outcome(attempt: impl FnOnce() -> Result<Option<Account>, String>) -> Outcome {
-    match catch_unwind(AssertUnwindSafe(attempt)) {
+    match caught(attempt) {
         Ok(Ok(Some(account))) => Outcome::Done(account),
         Ok(Ok(None)) => Outcome::Open,
         Ok(Err(message)) => Outcome::Failed(message),
-        Err(panic) => {
-            let text = panic.downcast_ref::<String>().map(String::as_str);
-            let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
-            Outcome::Failed(format!(
-                "the program failed, please report this as a bug: {}",
-                text.unwrap_or("without a message")
-            ))
-        }
+        Err(fault) => Outcome::Failed(fault.to_string()),
     }
 }
 
@@ -329,7 +321,7 @@ mod tests {
                 panic!("a panic has passed for {panicking:?}");
             };
             assert!(
-                message.contains("bug") && message.ends_with(words),
+                message.contains("report this") && message.ends_with(words),
                 "{message}"
             );
         }

@@ -1,15 +1,14 @@
 //! Choices of method and step for an accuracy: one a block of variants, made by trials on the first variant of it that can be run.
 
 use std::collections::HashMap;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::{Sweep, account};
-use crate::RunError;
 use crate::execute::choice;
 use crate::precision::Choice;
 use crate::seal::SealedValue;
+use crate::{RunError, caught};
 
 /// The choice of a block; none where every variant is on its own: no accuracy is asked for, or none of them can be run.
 pub(super) type SharedChoice = Option<Arc<Choice>>;
@@ -69,7 +68,7 @@ impl Sweep {
                 }
             };
             // What is wrong with this variant is told when it is run; the next one serves as well.
-            if let Ok(Some(made)) = catch_unwind(AssertUnwindSafe(attempt)) {
+            if let Ok(Some(made)) = caught(attempt) {
                 return made;
             }
         }

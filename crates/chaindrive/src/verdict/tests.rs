@@ -21,6 +21,7 @@ fn ledger_with(residual: f64) -> Ledger {
         loads_exchanged: 98.0,
         kinetic: 10.0,
         rounding: 1e-9,
+        teeth: 1000.0,
     }
 }
 
@@ -63,6 +64,37 @@ fn more_out_than_in_is_distrusted() {
         ..ledger_with(2.1)
     };
     assert_eq!(names(&swinging, 1000), ["losses-wrong"]);
+}
+
+/// Defect: 1 ns of a drive had an efficiency of 1639 %, since springs in which friction stands gave back what they had taken before.
+#[test]
+fn a_start_has_no_efficiency() {
+    let short = Ledger {
+        teeth: 2.9,
+        ..ledger_with(0.0)
+    };
+    let springs = Ledger {
+        losses: -2.0,
+        delivered: 102.0,
+        ..ledger_with(0.0)
+    };
+    let spun_up = Ledger {
+        delivered: 48.0,
+        ..ledger_with(0.0)
+    };
+    for (ledger, why) in [
+        (short, "three teeth"),
+        (springs, "gave back"),
+        (spun_up, "motion"),
+    ] {
+        assert!(ledger.efficiency().is_none());
+        assert!(ledger.unknown().unwrap().contains(why), "{why}");
+    }
+    let unknown_teeth = Ledger {
+        teeth: f64::NAN,
+        ..ledger_with(0.0)
+    };
+    assert!(unknown_teeth.efficiency().is_some());
 }
 
 /// Valves give back over their cams what was put into their springs. Of the 100 J that were put in for good a record has up to 20 more or less, by

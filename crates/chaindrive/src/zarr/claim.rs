@@ -12,7 +12,7 @@
 //! The next writer clears away the folder of a dead process.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
@@ -23,6 +23,8 @@ use super::write_error::WriteError;
 
 /// Times that the lock is tried: readers that ask whether a result is being written hold it for a moment.
 const TRIES: u32 = 10;
+/// Most that a writer says of itself \[bytes\].
+const LONGEST: u64 = 200;
 const BETWEEN_TRIES: Duration = Duration::from_millis(20);
 
 /// The right to write a result, for this process alone.
@@ -307,7 +309,9 @@ fn lock(beside: &Path) -> Result<File, Refusal> {
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
-                held = fs::read_to_string(&path).ok();
+                let mut told = String::new();
+                let read = File::open(&path).map(|it| it.take(LONGEST).read_to_string(&mut told));
+                held = read.is_ok().then_some(told);
                 sleep(BETWEEN_TRIES);
                 continue;
             }

@@ -12,6 +12,7 @@ mod courses;
 mod describe;
 mod duty;
 mod dynamics;
+mod ends_of_numbers;
 mod energy;
 mod examples;
 mod film;

@@ -96,7 +96,7 @@ const CASES: &[Mistake] = &[
     ("links = 78", "links = 99999999999", "chain.links", 5, "must be at most 100000"),
     ("teeth = 19\ncentre = [\"0 mm\"", "teeth = 1000\ncentre = [\"0 mm\"", "sprockets[0].teeth", 15, "1000, must be at most 600"),
     ("teeth = 19\ncentre = [\"0 mm\"", "teeth = 3\ncentre = [\"0 mm\"", "sprockets[0].teeth", 15, "3, must be at least 5"),
-    ("15.88 mm", "30 mm", "sprockets[0].teeth", 15, "smaller than the pitch"),
+    ("15.88 mm", "30 mm", "chain.roller_diameter", 9, "smaller than the pitch"),
     // Kinds.
     ("kind = \"constant\", speed", "kind = \"constnt\", speed", "sprockets[0].motion.kind", 17, "unknown kind `constnt`; did you mean `constant`?"),
     ("kind = \"power\"", "kind = \"quantum\"", "contact.teeth.law.kind", 11, "known are linear, power, hertz, johnson, conformal"),

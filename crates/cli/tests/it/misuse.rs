@@ -92,3 +92,17 @@ fn no_message_about_a_command_line_speaks_of_a_library() {
     assert!(complaints.is_empty(), "{}", complaints.join("\n\n"));
     assert!(wrong > 60, "only {wrong} of {MISTAKES} were mistakes");
 }
+
+/// A mistake of the program: here of whoever watches a run.
+#[test]
+fn a_panic_has_an_exit_code_of_its_own() {
+    for verb in ["run spinning_ring", "run spinning_ring --json"] {
+        let more = ["--until", "1ms", "--no-error"];
+        let arguments = ["chaindrive"]
+            .into_iter()
+            .chain(verb.split(' '))
+            .chain(more);
+        let code = chaindrive_cli::run(arguments, &|| panic!("as asked for"));
+        assert_eq!(code, 70, "{verb}");
+    }
+}

@@ -22,10 +22,10 @@ pub(super) fn does_not_close(
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "a positive count of links"
+        reason = "a positive count of links, which saturates"
     )]
     let below = taut.floor() as u32;
-    let above = below + 1;
+    let above = below.saturating_add(1);
     Ok(GeometryError::DoesNotClose {
         links,
         taut,

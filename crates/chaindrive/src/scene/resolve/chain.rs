@@ -91,6 +91,9 @@ pub(super) fn resolve(
                 .or_multiple(None::<f64>, default, pitch)
         }
     };
+    if !described.sprockets.is_empty() && are_too_large(roller_diameter, pitch, findings) {
+        return None;
+    }
     let roller_length = text.roller.as_ref().and_then(|roller| roller.length);
     let roller_length = roller_length.map(f64::from);
     let roller_length = roller_length.or(of_type.and_then(catalogue::roller_length));
@@ -148,6 +151,20 @@ pub(super) fn resolve(
         behind_teeth,
         uncounted,
     })
+}
+
+/// Refuses rollers as large as the pitch, before anything is laid: a route of a wrong pitch takes millions of links.
+fn are_too_large(roller_diameter: f64, pitch: f64, findings: &mut Findings<'_>) -> bool {
+    let refused = roller_diameter >= pitch;
+    if refused {
+        let message = format!("{roller_diameter:e} m, must be smaller than the pitch, {pitch:e} m");
+        findings.refuse_with(
+            "chain.roller_diameter",
+            message,
+            "look at the units of both",
+        );
+    }
+    refused
 }
 
 /// Strength and rating of the chain. Strands and service factor count where it can be rated, and are assumed there only.

@@ -65,6 +65,7 @@ const CRATES: [Storeys; 6] = [
                 "stepping",
             ],
             &["identity"],
+            &["net"],
             &["catalogue", "design", "draw", "rating", "seal"],
             &["error", "scene"],
             &["channel", "interruptible"],

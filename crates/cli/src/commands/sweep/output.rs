@@ -5,6 +5,7 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use chaindrive::cell;
 use chaindrive::record::{Ending, Existing};
 use chaindrive::sweep::{Outcome, Progress, Sweep, SweepArrays};
 
@@ -144,7 +145,9 @@ fn columns<'a>(sweep: &'a Sweep, stacked: &'a SweepArrays) -> Vec<Column<'a>> {
     for (which, dimension) in sweep.dimensions().iter().enumerate() {
         columns.push((
             named(&dimension.name, dimension.unit),
-            Box::new(move |variant| dimension.values.text(sweep.indices(variant)[which])),
+            Box::new(move |variant| {
+                cell(&dimension.values.text(sweep.indices(variant)[which])).into_owned()
+            }),
         ));
     }
     for it in &stacked.quantities {
@@ -167,7 +170,7 @@ fn columns<'a>(sweep: &'a Sweep, stacked: &'a SweepArrays) -> Vec<Column<'a>> {
     for it in &stacked.texts {
         columns.push((
             it.name.to_owned(),
-            Box::new(|variant| it.texts[variant].clone()),
+            Box::new(|variant| cell(&it.texts[variant]).into_owned()),
         ));
     }
     columns
