@@ -39,6 +39,8 @@ pub struct Summary {
     pub spans: Vec<SpanStatistics>,
     /// Period of the slowest forcing \[s\]; infinite where nothing repeats.
     period: f64,
+    /// Time in which a tooth of the slowest chain passes \[s\]; 0 without sprockets, infinite where it stands.
+    tooth: f64,
     /// How long the drive had moved before the record, and time in which the slowest tensioner comes nearer to its place by e \[s\].
     run_in: f64,
     settling: f64,
@@ -198,6 +200,7 @@ impl Summary {
         let relaxation = tensioners.map(|it| it.push.relaxation());
         Self {
             period,
+            tooth: assembled.slowest_tooth(),
             run_in: assembled.zero,
             settling: SETTLING * relaxation.fold(0.0, f64::max),
             began: None,
@@ -416,7 +419,7 @@ impl Summary {
             loads_exchanged: self.turnover.loads,
             kinetic: self.turnover.kinetic(),
             rounding: self.turnover.rounding(),
-            teeth: self.mesh_frequency() * (self.ended - self.began.unwrap_or(self.ended)),
+            teeth: self.duration().max(0.0) / self.tooth,
         }
     }
 

@@ -295,7 +295,7 @@ fn the_rating_of_a_chain_is_told() {
 fn a_drive_that_serves_nobody_has_no_efficiency() {
     let idle = TWO_SPROCKETS.replace("load = [{ kind = \"constant\", torque = \"-90 N m\" }]", "");
     let ramp = r#"sprockets.driver.motion={ kind = "ramp", from = "0 rpm", to = "300 rpm", duration = "10 ms" }"#;
-    let arguments = words("run scene.toml --until 20ms --run-in 0 --no-error --step 5us");
+    let arguments = words("run scene.toml --until 50ms --run-in 0 --no-error --step 5us");
     let (code, out, err) = run(&idle, &[&arguments[..], &["--set", ramp]].concat());
     assert_eq!(code, 0, "{err}");
     let row = out
