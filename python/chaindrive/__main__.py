@@ -4,6 +4,7 @@
 # before that is in every Python when it starts: `signal` takes milliseconds.
 import _signal  # type: ignore[import-not-found]
 import os
+import sys
 
 INTERRUPTED = 130
 PROGRAM = 70
@@ -15,11 +16,11 @@ def _leave(*_: object) -> None:
     os._exit(INTERRUPTED)
 
 
-# A shell has what it starts in the background ignore Ctrl-C, and that is to stay.
-if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
+# Whoever imports this for something else keeps Ctrl-C as it is. A shell has what it starts in the
+# background ignore it, and that is to stay.
+_IS_COMMAND = __name__ == "__main__" or sys.argv[0].rpartition(os.sep)[2].startswith("chaindrive")
+if _IS_COMMAND and _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
     _signal.signal(_signal.SIGINT, _leave)
-
-import sys  # noqa: E402
 
 from chaindrive import _core  # noqa: E402
 from chaindrive.signals import hear  # noqa: E402

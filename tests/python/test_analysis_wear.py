@@ -473,7 +473,7 @@ def test_utilisation_is_load_over_limit(industrial):
     pressure = float(found["load"].sel(check="pressure"))
     assert pressure == pytest.approx(float(rating["bearing_pressure"]), rel=1e-12)
     assert pressure == pytest.approx(spans / (8.28e-3 * 25.32e-3), rel=2e-3)
-    assert f"with {pressure / 1e6:.4g} MPa" in industrial.attrs["summary"]
+    assert f"{pressure / 1e6:.4g} N/mm², at most 30" in industrial.attrs["summary"]
     # Twice as long a bush, half the pressure.
     wider = industrial.drive.utilisation(bush_length=2 * 25.32e-3)["load"].sel(check="pressure")
     assert float(wider) == pytest.approx(pressure / 2)

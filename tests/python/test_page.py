@@ -168,7 +168,7 @@ def test_the_verdict_is_seen_in_a_notebook(monkeypatch: pytest.MonkeyPatch) -> N
 def test_a_report_is_one_file_that_asks_for_nothing(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     drive = cd.scenes.industrial_16b()
-    settings = {"until": 0.02, "run_in": 0, "error": False}
+    settings = {"until": 0.04, "run_in": "50 ms", "error": False}
     run = cd.simulate(drive, record="all", events=["teeth"], **settings)
     place = tmp_path / "report.html"
     text = cd.report(run, place)

@@ -66,6 +66,7 @@ def test_the_command_imports_the_core_only(argument: str) -> None:
 INTERRUPTED_AT = """
 import signal, sys
 left = int(sys.argv.pop(1))
+sys.argv[0] = "bin/chaindrive"
 def count(event, arguments):
     global left
     if event == "import" and "chaindrive.__main__" in sys.modules:

@@ -299,7 +299,7 @@ def test_values_may_be_anything_that_a_scene_takes():
         ({PRETENSION: [1e3]}, {"accuracy": 0.1, "step": 1e-6}, cd.ParameterError, "step"),
         ({"run.step": [1e-6]}, {"step": 1e-6}, cd.ParameterError, "given as `step` as well"),
         ({PRETENSION: [1e3]}, {"method": "euler"}, cd.ParameterError, "euler"),
-        ({PRETENSION: b"abc"}, {}, cd.ParameterError, "bytes has no place"),
+        ({PRETENSION: b"abc"}, {}, cd.SceneError, "bytes has no place"),
         ([PRETENSION], {}, TypeError, "a dict of values by path"),
         ({PRETENSION: [1e3]}, {"accuracy": "1 mm"}, cd.SceneError, "is a length"),
         ({"run.every": [1e-3, 2e-3]}, {"record": "contacts"}, cd.ParameterError, "interval"),

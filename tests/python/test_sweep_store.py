@@ -111,7 +111,7 @@ def test_a_table_may_hold_words_counts_and_rows_twice():
         (None, {"route.pretenson": [1.0, 2.0]}, cd.SceneError, "pretension"),
         (None, {"chain.links": [112.0, 112.5, 113.0]}, cd.SceneError, "chain.links"),
         (None, {PRETENSION: ["1 kN", "1 mm"]}, cd.SceneError, "is a length"),
-        (None, {PRETENSION: [1e3, np.nan]}, cd.ParameterError, PRETENSION),
+        (None, {PRETENSION: [1e3, np.nan]}, cd.SceneError, PRETENSION),
     ],
 )
 def test_a_wrong_table_is_refused_before_anything_runs(vary, design, error, words):

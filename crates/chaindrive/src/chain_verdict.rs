@@ -23,7 +23,7 @@ use crate::figure::figure;
 use crate::summary::Summary;
 use crate::zarr::Story;
 
-pub use layout::layout_checks;
+pub use layout::{against_practice, layout_checks, remarks};
 pub(crate) use strength::{ALIGNED, ALIGNED_FAST};
 
 /// Outcome of a check, the best first.
@@ -121,7 +121,7 @@ limits! {
     TwinPower, "twin-power", "power carried times service factor over the rated power of the ASME B29.1 chain of its pitch", "%", AtMost, warn &[100.0], fail None, "ASME B29.1 rates another chain: its twin";
     Speed, "speed", "chain speed over the greatest of its type", "%", AtMost, warn &[100.0], fail Some(100.0), "none could be read in a public source";
     OutOfLine, "out-of-line", "distance of the planes of sprockets over their centre distance", "%", AtMost, warn &[100.0 * ALIGNED], fail None, "SEDIS, Transmission chains; in fast drives 0.1 %";
-    Wear, "wear-reserve", "elongation by wear over the limit of its use", "%", AtMost, warn &[80.0], fail Some(100.0), "3 %, 200/z %, 1.5 % on fixed centres: Diamond Chain, How can the wear in a roller chain be measured; 1 % beside guides: manual of a marine engine";
+    Wear, "wear-used", "elongation by wear over the limit of its use", "%", AtMost, warn &[80.0], fail Some(100.0), "3 %, 200/z %, 1.5 % on fixed centres: Diamond Chain, How can the wear in a roller chain be measured; 1 % beside guides: manual of a marine engine";
     Wrap, "wrap", "wrap of the smallest sprocket that carries power", "deg", AtLeast, warn &[120.0], fail None, "HKK, Installation; Renold";
     Teeth, "teeth", "teeth of the smallest sprocket that carries power", "", AtLeast, warn &[17.0], fail None, "assumed: Renold asks for 19, Tsubaki for 15";
     Ratio, "ratio", "teeth of the largest over those of the smallest sprocket that carries power", "", AtMost, warn &[7.0], fail None, "American Chain Association: 7 to 1 in a single reduction";

@@ -36,17 +36,8 @@ pub use route::{SpanAtRest, StopFacts, spans_at_rest, wraps};
 pub use stack::{StackFacts, StackTermFacts};
 pub use tolerance::ToleranceFacts;
 
-use crate::chain_verdict::{CheckOutcome, layout_checks};
+use crate::chain_verdict::{layout_checks, remarks};
 use crate::{Run, SimulationError, rating};
-
-/// Checks of the layout that warn.
-fn against_practice(drive: &Drive, assembled: &Assembled) -> Vec<String> {
-    let checks = layout_checks(drive, &wraps(drive, assembled)).into_iter();
-    let warned = checks.filter(|check| check.outcome == CheckOutcome::Warning);
-    warned
-        .map(|check| format!("{check} ({})", check.limit.source()))
-        .collect()
-}
 
 /// A drive and a run, described.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
@@ -298,7 +289,7 @@ impl Description {
             polygon: polygon::pairs(drive, &start),
             cost: cost::measure(assembled, run)?,
             warnings: warnings(assembled, run.until),
-            against_practice: against_practice(drive, assembled),
+            against_practice: remarks(layout_checks(drive, &wraps(drive, assembled))),
             spans,
         })
     }

@@ -44,9 +44,10 @@ pub struct Summary {
     /// How long the drive had moved before the record, and time in which the slowest tensioner comes nearer to its place by e \[s\].
     run_in: f64,
     settling: f64,
-    /// Time of the first sample, and of the first reading of the spans \[s\].
+    /// Time of the first sample, and of the first reading of the spans \[s\]; how long they have been read.
     began: Option<f64>,
     first_reading: Option<f64>,
+    reading: f64,
     #[serde(with = "value_counts")]
     forces: Histogram<u64>,
     largest_force: f64,
@@ -205,6 +206,7 @@ impl Summary {
             settling: SETTLING * relaxation.fold(0.0, f64::max),
             began: None,
             first_reading: None,
+            reading: 0.0,
             spans: simulation
                 .system()
                 .span_names()
@@ -252,6 +254,7 @@ impl Summary {
         for span in &mut self.spans {
             span.end(end);
         }
+        self.reading = end;
         self.account
             .end(simulation.outstanding_periods(), self.period);
     }
@@ -262,6 +265,7 @@ impl Summary {
         let (tensions, rest) = rest.split_at(self.spans.len());
         let (pressed, phases) = rest.split_at(self.carried.chains());
         let first = *self.first_reading.get_or_insert(time);
+        self.reading = time - first;
         self.harmonics.clear();
         let waves = phases.iter().map(|phase| phase.sin_cos());
         self.harmonics.extend(waves.flat_map(|(s, c)| [c, s]));
@@ -303,7 +307,7 @@ impl Summary {
     /// s = 15 % exp(−(t_run-in + T/2)/(2 c/k))     of the scale; c/k: relaxation of the slowest tensioner
     /// ```
     pub fn steadiness(&self) -> Vec<Option<Steadiness>> {
-        let middle = self.run_in + 0.5 * self.duration().max(0.0);
+        let middle = self.run_in + 0.5 * self.reading;
         let left = LEFT_OF_START * (-middle / self.settling.max(f64::MIN_POSITIVE)).exp();
         let spans = self.spans.iter().zip(self.scales());
         spans

@@ -135,10 +135,11 @@ def write_dxf(path: str | PathLike[str], what: Outlined, *, settled: bool = True
         The file cannot be written.
     """
     ezdxf = extra("ezdxf", _WHAT)
+    curves = outlines(what, settled=settled)
     place = NewFile(path)
     drawing = ezdxf.new("R2010", units=ezdxf.units.MM)
     space = drawing.modelspace()
-    for curve in outlines(what, settled=settled):
+    for curve in curves:
         layer = curve.layer.translate(_FORBIDDEN) or "0"
         if layer not in drawing.layers:
             drawing.layers.add(layer)

@@ -2,7 +2,8 @@
 
 use chaindrive_mechanics::{Drive, Layout, PlacedChain, Rotation, Stop, Support};
 
-use super::{Check, Limit};
+use super::{Check, CheckOutcome, Limit};
+use crate::design::ChainLayout;
 
 /// Centre distance in pitches from which on a chain conveys. *Assumed*: no drive is as long.
 const CONVEYS: f64 = 80.0;
@@ -49,26 +50,82 @@ fn of_chain(drive: &Drive, placed: &PlacedChain, wraps: &[Option<f64>]) -> Vec<C
     if centres.is_some_and(|it| it > CONVEYS) {
         return Vec::new();
     }
-    let teeth = |index: &usize| drive.sprockets[*index].gap.teeth;
-    let smallest = powered.iter().min_by_key(|index| teeth(index));
-    let largest = powered.iter().map(teeth).max();
+    let powered = powered.iter().map(|index| Powered {
+        name: &drive.sprockets[*index].name,
+        teeth: drive.sprockets[*index].gap.teeth,
+        wrap: wraps.get(*index).copied().flatten(),
+    });
+    practice(of, &powered.collect::<Vec<_>>(), centres)
+}
+
+/// A sprocket that carries power, with its wrap \[rad\] where that is known.
+struct Powered<'a> {
+    name: &'a str,
+    teeth: u32,
+    wrap: Option<f64>,
+}
+
+/// Checks of the chain of this name on its sprockets that carry power; `centres`: their distance \[pitches\], where there are two.
+fn practice(of: &str, powered: &[Powered<'_>], centres: Option<f64>) -> Vec<Check> {
+    let smallest = powered.iter().min_by_key(|it| it.teeth);
+    let largest = powered.iter().map(|it| it.teeth).max();
     let (Some(smallest), Some(largest)) = (smallest, largest) else {
         return Vec::new();
     };
-    let name = drive.sprockets[*smallest].name.as_str();
-    let least = f64::from(teeth(smallest));
+    let least = f64::from(smallest.teeth);
     let mut checks = vec![
-        Check::of(Limit::Teeth, name, least).with(if least < LEAST_TEETH {
+        Check::of(Limit::Teeth, smallest.name, least).with(if least < LEAST_TEETH {
             "11 at the least: assumed, Tsubaki recommends more than 13"
         } else {
             ""
         }),
         Check::of(Limit::Ratio, of, f64::from(largest) / least),
     ];
-    let wrap = wraps.get(*smallest).copied().flatten();
-    checks.extend(wrap.map(|wrap| Check::of(Limit::Wrap, name, wrap.to_degrees())));
+    let wrap = smallest.wrap.map(f64::to_degrees);
+    checks.extend(wrap.map(|wrap| Check::of(Limit::Wrap, smallest.name, wrap)));
     checks.extend(centres.map(|pitches| Check::of(Limit::Centres, of, pitches)));
     checks
+}
+
+/// What of the layouts of a drive is against good practice, in words. Without a drive all sprockets carry power.
+pub fn against_practice(layouts: &[ChainLayout], drive: Option<&Drive>) -> Vec<String> {
+    let stops = || layouts.iter().flat_map(|it| &it.stops);
+    let checks = match drive {
+        Some(drive) => {
+            let wrap = |name: &str| stops().find(|it| it.name == name).map(|it| it.wrap);
+            let wraps = drive.sprockets.iter().map(|it| wrap(&it.name));
+            layout_checks(drive, &wraps.collect::<Vec<_>>())
+        }
+        None => layouts.iter().flat_map(of_layout).collect(),
+    };
+    remarks(checks)
+}
+
+fn of_layout(layout: &ChainLayout) -> Vec<Check> {
+    let toothed = layout.stops.iter().filter_map(|it| {
+        it.teeth.map(|teeth| Powered {
+            name: &it.name,
+            teeth,
+            wrap: Some(it.wrap),
+        })
+    });
+    let centres = match &layout.stops[..] {
+        [first, second] => {
+            let [x, y] = [0, 1].map(|axis| second.centre[axis] - first.centre[axis]);
+            Some(x.hypot(y) / layout.pitch)
+        }
+        _ => None,
+    };
+    practice("", &toothed.collect::<Vec<_>>(), centres)
+}
+
+/// Checks that warn, in words with the source of their limit.
+pub fn remarks(checks: Vec<Check>) -> Vec<String> {
+    let warned = checks.into_iter();
+    let warned = warned.filter(|check| check.outcome == CheckOutcome::Warning);
+    warned
+        .map(|check| format!("{check} ({})", check.limit.source()))
+        .collect()
 }
 
 /// Teeth below which the warning has another word.

@@ -15,6 +15,8 @@ use crate::{RunInReport, Simulation, Verdict};
 
 /// Share of the greatest power of its chain below which a sprocket idles. *Assumed*: bearings and teeth of an idler take less.
 const IDLES: f64 = 0.02;
+/// Share of a power by which the product of mean torque and mean speed differs where that is told. *Assumed*: what a reader would ask about.
+const SWINGS: f64 = 0.01;
 /// Inputs that are named before the rest is counted. *Assumed*: two lines of a terminal.
 const NAMED: usize = 6;
 
@@ -151,6 +153,19 @@ impl PageContent<'_> {
                 powers.cell(it.power.abs()),
                 figure(ratio),
             ]);
+        }
+        let swings = |it: &&SprocketStatistics| {
+            (it.power - it.torque * it.speed).abs() > SWINGS * it.power.abs()
+        };
+        if sprockets
+            .iter()
+            .filter(swings)
+            .any(|it| self.role(it) != "idles")
+        {
+            section.sentences.push(
+                "Power is the mean of torque times speed, which swing together: it is not the product of their means."
+                    .to_owned(),
+            );
         }
         section.sentences.extend(self.chain_speeds());
         let speeds: Vec<f64> = sprockets.iter().map(|it| it.speed).collect();
@@ -302,7 +317,8 @@ impl PageContent<'_> {
             .collect();
         let scale = Measure::Force.scale(all.iter().map(|(_, it)| it.extremes.greatest));
         let unit = scale.unit;
-        let greatest = format!("greatest [{unit}]\tat [s]\tof a period, median [{unit}]\t± 95 %");
+        let greatest =
+            format!("greatest [{unit}]\tat [s]\tgreatest of a period, median [{unit}]\t± 95 %");
         let columns = format!("on\tmean [{unit}]\tdirection from x [deg]\t{greatest}");
         let mut section = Section::new("shaft loads and guide forces", &columns);
         for (name, force) in all {
@@ -337,18 +353,19 @@ impl PageContent<'_> {
         let by_step = estimate.map_or("", |_| "\t± step [%]");
         let (unit, impulse) = (scale.unit, impulses.unit);
         let half = format!("on\tnumber\tmedian [{unit}]{by_step}");
-        let most = format!("p99 [{unit}]\tgreatest [{unit}]{by_step}");
+        let most = format!("p99 [{unit}]{by_step}\tgreatest [{unit}]");
         let columns = format!("{half}\t{most}\timpulse [{impulse}]\tclosing [m/s]");
         let mut section = Section::new("impacts of rollers that seat", &columns);
         for it in struck {
             let errors = estimate.map(|all| error_by_step::of_impacts(all, &it.sprocket));
             let half = errors.map(|it| error_by_step::cell(it.map(|it| it.p50)));
-            let greatest = errors.map(|it| error_by_step::cell(it.map(|it| it.p99)));
+            let most = errors.map(|it| error_by_step::cell(it.map(|it| it.p99)));
             let mut row = vec![it.sprocket.clone(), it.count.to_string()];
             row.push(scale.cell(it.force(0.5)));
             row.extend(half);
-            row.extend([it.p99(), it.greatest].map(|force| scale.cell(force)));
-            row.extend(greatest);
+            row.push(scale.cell(it.p99()));
+            row.extend(most);
+            row.push(scale.cell(it.greatest));
             row.push(impulses.cell(it.impulse(0.5)));
             row.push(format!("{:.3}", it.speed(0.5)));
             section.rows.push(row);
@@ -356,6 +373,10 @@ impl PageContent<'_> {
         if !section.rows.is_empty() {
             let impulses = estimate.and_then(error_by_step::of_impulses);
             section.sentences.extend(impulses);
+            section.sentences.push(
+                "The greatest is one blow of this record: a longer one, and another step, find others, some greater by a quarter."
+                    .to_owned(),
+            );
         }
         section
     }

@@ -1,6 +1,7 @@
 //! `chaindrive design`: how many links, and where does everything touch?
 
 use chaindrive::catalogue::Number;
+use chaindrive::chain_verdict::against_practice;
 use chaindrive::design::{ChainLayout, clashes, of, of_two_sprockets};
 use chaindrive::scene::{chain_named, read_length};
 use clap::{ArgGroup, Args};
@@ -60,7 +61,9 @@ pub(crate) struct Arguments {
 
 pub(crate) fn design(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let Some(scene) = &arguments.scene else {
-        return show(&[of_two(arguments)?], &[], arguments.json);
+        let layouts = [of_two(arguments)?];
+        let remarks = against_practice(&layouts, None);
+        return show(&layouts, &[], &remarks, arguments.json);
     };
     let mut scene = load(scene, interrupted)?;
     for change in &arguments.set {
@@ -84,7 +87,8 @@ pub(crate) fn design(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> R
         )));
     }
     let clashes: Vec<String> = clashes.iter().map(ToString::to_string).collect();
-    show(&layouts, &clashes, arguments.json)
+    let remarks = against_practice(&layouts, Some(&drive));
+    show(&layouts, &clashes, &remarks, arguments.json)
 }
 
 /// The layout of two sprockets.
@@ -127,13 +131,21 @@ pub(super) struct Layouts<'a> {
     chains: &'a [ChainLayout],
     /// Bodies in each other's way.
     clashes: &'a [String],
+    /// What of the layouts is against good practice, with its source.
+    against_practice: &'a [String],
 }
 
-fn show(layouts: &[ChainLayout], clashes: &[String], json: bool) -> Result<(), Failure> {
+fn show(
+    layouts: &[ChainLayout],
+    clashes: &[String],
+    against_practice: &[String],
+    json: bool,
+) -> Result<(), Failure> {
     if json {
         return answer(&Layouts {
             chains: layouts,
             clashes,
+            against_practice,
         });
     }
     for layout in layouts {
@@ -141,6 +153,9 @@ fn show(layouts: &[ChainLayout], clashes: &[String], json: bool) -> Result<(), F
     }
     for clash in clashes {
         print(format_args!("warning: {clash}"))?;
+    }
+    for remark in against_practice {
+        print(format_args!("good practice: {remark}"))?;
     }
     Ok(())
 }

@@ -336,3 +336,26 @@ fn two_sprockets_are_laid_out_for_a_chain_of_the_catalogue() {
         "--centre-distance: `400` has no unit; write \"400 mm\", or \"400 m\"\n"
     );
 }
+
+/// M9: nine teeth on 72 at 240 mm, by the rules of makers; 19 on 57 at a metre keeps them.
+#[test]
+fn a_layout_against_good_practice_is_told() {
+    let design = |teeth: &str, distance: &str| {
+        let arguments = ["--sprockets", teeth, "--centre-distance", distance];
+        let (code, out, err) = run(
+            TWO_SPROCKETS,
+            &[&["design", "--pitch", "12.7 mm"], &arguments[..]].concat(),
+        );
+        assert_eq!(code, 0, "{err}");
+        let told = out
+            .lines()
+            .filter_map(|it| it.strip_prefix("good practice: "));
+        told.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let told = design("9,72", "240 mm");
+    for (word, remark) in ["9", "8", "wrap"].iter().zip(&told) {
+        assert!(remark.to_lowercase().contains(word), "{told:?}");
+    }
+    assert_eq!(told.len(), 4, "teeth, ratio, wrap, centres: {told:?}");
+    assert!(design("19,57", "500 mm").is_empty());
+}
