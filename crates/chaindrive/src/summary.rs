@@ -202,7 +202,7 @@ impl Summary {
         Self {
             period,
             tooth: assembled.slowest_tooth(),
-            run_in: assembled.zero,
+            run_in: assembled.moved_for(),
             settling: SETTLING * relaxation.fold(0.0, f64::max),
             began: None,
             first_reading: None,

@@ -202,6 +202,11 @@ impl Assembled {
         })
     }
 
+    /// How long it has moved since it stood at rest \[s\].
+    pub fn moved_for(&self) -> f64 {
+        self.time - self.drive.begin
+    }
+
     /// The same with the zero of the record elsewhere on the clock of the drive \[s\].
     #[must_use]
     pub fn recorded_from(self, zero: f64) -> Self {
