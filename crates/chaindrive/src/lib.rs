@@ -32,6 +32,7 @@ mod identity;
 mod interruptible;
 pub mod laws;
 pub mod page;
+pub mod plausibility;
 pub mod precision;
 mod rainflow;
 pub mod rating;
