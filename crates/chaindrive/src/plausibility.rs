@@ -81,7 +81,7 @@ pub const PLAUSIBILITY_RULES: &[PlausibilityRule] = &[
         label: "height of the link plates over the pitch",
         unit: "",
         limits: [0.5, 1.2],
-        source: "0.65 to 0.97 in ISO 606: assumed with room for other chains",
+        source: "0.78 to 0.95 in ISO 606: assumed with room for other chains",
         values: plate_heights,
     },
     PlausibilityRule {

@@ -297,6 +297,7 @@ impl Drive {
             free_trains::let_go(&mut system, &moving);
             statics = settled
                 .map_err(|error| laid_through_a_guide(&laid).unwrap_or(error))
+                .map_err(|error| worn::named(error, &laid.parts, &fittings))
                 .map_err(|error| overload::named(error, &system, &laid.parts, (&q, &torques)))?;
         }
         for train in trains.iter().filter(|it| it.speed != 0.0) {

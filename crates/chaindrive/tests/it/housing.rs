@@ -133,9 +133,10 @@ fn drive(sprockets: &[(u32, [f64; 2])], links: u32, pitch: f64, more: &str) -> S
             _ if place == last => "inertia = 0.02\nload = [{ kind = \"constant\", torque = 6 }]",
             _ => "inertia = 0.02",
         };
-        text += &format!(
+        let sprocket = format!(
             "[[sprockets]]\nname = \"s{place}\"\nteeth = {teeth}\ncentre = [\"{x:.12} mm\", \"{y:.12} mm\"]\n{turned}\n"
         );
+        text.push_str(&sprocket);
     }
     Scene::from_text(&text, "test.toml").expect("a scene")
 }

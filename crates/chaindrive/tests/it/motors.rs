@@ -1,4 +1,5 @@
 //! Drives that torques turn, chains that sag on purpose, and what is said of those that cannot be.
+#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::f64::consts::{PI, TAU};
 

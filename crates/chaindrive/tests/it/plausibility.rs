@@ -1,11 +1,12 @@
 //! What hardly any machine is like is told, and presets are told nothing.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-use chaindrive::Scene;
 use chaindrive::plausibility::{PLAUSIBILITY_RULES, implausible};
 use chaindrive::scene::presets;
+use chaindrive::{Memory, Onlooker, Request, Scene, SettingValue, Settings, execute};
 
 const SCENE: &str = r#"
 gravity = [0, "-9.81 m/s^2"]
@@ -127,4 +128,44 @@ fn the_rules_are_documented() {
         let line = line.unwrap_or_else(|| panic!("no row of {}", rule.name));
         assert!(line.ends_with(&format!("| {} |", rule.source)), "{line}");
     }
+}
+
+/// Listens until it is told how long a run takes, and stops it then.
+#[derive(Default)]
+struct Listener(RefCell<Option<String>>);
+
+impl Onlooker for Listener {
+    fn stop(&self) -> bool {
+        self.0.borrow().is_some()
+    }
+
+    fn asks_for_time(&self) -> bool {
+        true
+    }
+
+    fn foretell(&self, sentence: &str) {
+        self.0.replace(Some(sentence.to_owned()));
+    }
+}
+
+/// What a run says of its time before it begins.
+fn foretold(until: f64) -> Option<String> {
+    let settings = Settings::default()
+        .with("until", SettingValue::Number(until))
+        .with("every", SettingValue::Number(0.1 * until));
+    let request = Request::new(&Scene::preset("spinning_ring").unwrap(), &settings).unwrap();
+    let listener = Listener::default();
+    // A run that is stopped is a report or an error, as far as it came.
+    execute(&request, &mut Memory::default(), &listener).ok();
+    listener.0.into_inner()
+}
+
+#[test]
+fn a_long_run_says_so_before_it_begins() {
+    let sentence = foretold(1e6).unwrap_or_default();
+    assert!(
+        sentence.starts_with("the run will take about"),
+        "{sentence}"
+    );
+    assert_eq!(foretold(1e-2), None);
 }

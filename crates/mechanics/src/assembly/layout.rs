@@ -238,7 +238,7 @@ fn around(
     } = close(&wheels, (pitch, links, longer, phase), |strain| {
         (strain < SLACK && fit.pretension <= 0.0).then_some((slack_span, gravity))
     })?;
-    worn::rides(parts, stops, &closing, pitch)?;
+    worn::check(parts, stops, &closing, pitch)?;
     let route = seat(laid, stops, &closing);
     let mut moved = moved;
     if fit.pretension > 0.0 && !by_travel {
