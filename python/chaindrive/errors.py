@@ -6,8 +6,9 @@ known; otherwise they are None.
 A warning points at the line of the program that called this package, and filters know it by its
 class: ``warnings.filterwarnings("error", category=chaindrive.VerdictWarning)``. Python reads its
 option ``-W`` before it can import packages: there, all of them are ``UserWarning``. Nothing else is
-said: functions print nothing and have no loggers. ``logging.captureWarnings(True)`` puts warnings
-into the log of a program.
+said but a line of the logger ``chaindrive`` before a run that is foretold to take above ten
+minutes: functions print nothing. ``logging.captureWarnings(True)`` puts warnings into the log of
+a program.
 """
 
 from __future__ import annotations

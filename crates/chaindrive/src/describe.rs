@@ -27,7 +27,7 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 pub use alignment::AlignmentFacts;
-pub use cost::Cost;
+pub use cost::{Cost, foretelling, foretold};
 pub use free_train::FreeTrainFacts;
 pub use links::{ContactFacts, LinkFacts, left_out};
 pub use oil::OilFacts;
@@ -37,6 +37,7 @@ pub use stack::{StackFacts, StackTermFacts};
 pub use tolerance::ToleranceFacts;
 
 use crate::chain_verdict::{layout_checks, remarks};
+use crate::plausibility::implausible;
 use crate::{Run, SimulationError, rating};
 
 /// A drive and a run, described.
@@ -77,6 +78,8 @@ pub struct Description {
     pub warnings: Vec<String>,
     /// What of the layout is against good practice, with the limit and its source.
     pub against_practice: Vec<String>,
+    /// What hardly any machine is like, with the limit and its source.
+    pub implausible: Vec<String>,
 }
 
 /// A chain in numbers.
@@ -139,6 +142,20 @@ pub struct Closing {
     /// Growth of the housing against chain and sprockets since then \[–\]; absent where there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub growth: Option<f64>,
+    /// Sag of the slack span; absent where none was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sag: Option<SagFacts>,
+}
+
+/// Sag of the slack span of a chain.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct SagFacts {
+    /// The span, "from-to".
+    pub span: String,
+    /// Sag \[m\] that was asked for: all slack hangs there, and the other spans are straight.
+    pub asked: f64,
+    /// Sag \[m\] where nothing pulls and the spans share the slack.
+    pub shared: f64,
 }
 
 /// Power that a chain is rated for where the run starts.
@@ -260,15 +277,21 @@ impl Description {
         let mesh = meshing.map(|(s, speed)| (s.name.clone(), mesh_frequency(s.gap.teeth, *speed)));
         let chains = drive.chains.iter().zip(&assembled.fittings);
         let mut chains: Vec<ChainFacts> = chains
-            .map(|(placed, fitting)| {
+            .enumerate()
+            .map(|(index, (placed, fitting))| {
                 let rated_power = rated_power(drive, placed, &start);
                 let closing = fitting.as_ref().map(|it| closing(drive, placed, it));
+                let closing = closing.map(|it| Closing {
+                    sag: route::sag(assembled, index),
+                    ..it
+                });
                 chain_facts(placed, closing, rated_power, &spans)
             })
             .collect();
         for against in drive.against_routes(&assembled.mean_speeds()) {
             chains[against.index].against_route = Some(against.to_string());
         }
+        let cost = cost::measure(assembled, run)?;
         Ok(Self {
             chains,
             shafts: shafts(drive, &start),
@@ -287,9 +310,13 @@ impl Description {
                 mesh_frequencies: mesh.collect(),
             },
             polygon: polygon::pairs(drive, &start),
-            cost: cost::measure(assembled, run)?,
             warnings: warnings(assembled, run.until),
             against_practice: remarks(layout_checks(drive, &wraps(drive, assembled))),
+            implausible: implausible(drive, Some(cost.whole_time()))
+                .iter()
+                .map(ToString::to_string)
+                .collect(),
+            cost,
             spans,
         })
     }
@@ -430,6 +457,7 @@ fn closing(drive: &Drive, placed: &PlacedChain, fitting: &Fitting) -> Closing {
         unit,
         adjusted: adjusted.cloned(),
         growth: growth.filter(|it| *it != 0.0),
+        sag: None,
     }
 }
 

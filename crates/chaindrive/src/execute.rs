@@ -140,6 +140,9 @@ pub(crate) fn execute_by<S: Sink>(
     onlooker: &dyn Onlooker,
 ) -> Result<Report, RunError<S::Error>> {
     let mut setup = Setup::new(request, known, onlooker)?;
+    if onlooker.asks_for_time() {
+        setup.foretell(onlooker).map_err(not_started)?;
+    }
     let mut waiting = None;
     if setup.provenance.run.run_in != RunIn::None {
         let simulation = setup.simulation().map_err(not_started)?;

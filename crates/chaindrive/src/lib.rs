@@ -34,6 +34,7 @@ pub mod laws;
 mod net;
 mod new_file;
 pub mod page;
+pub mod plausibility;
 pub mod precision;
 mod rainflow;
 pub mod rating;

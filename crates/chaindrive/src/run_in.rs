@@ -31,6 +31,16 @@ pub trait Onlooker {
     fn see_run_in(&self, share: f64) {
         let _ = share;
     }
+
+    /// Whether it wants to be told before a run begins how long that will take, where that is long: then the first steps are taken twice.
+    fn asks_for_time(&self) -> bool {
+        false
+    }
+
+    /// Is told before a run begins how long it will take, in a sentence.
+    fn foretell(&self, sentence: &str) {
+        let _ = sentence;
+    }
 }
 
 impl<F: Fn() -> bool> Onlooker for F {

@@ -26,7 +26,7 @@ mod solve;
 
 pub use nearest::{LinkCounts, close_nearest};
 pub use search::Search;
-pub use solve::{close_by_motion, close_by_strain, closing_strains};
+pub use solve::{close_by_motion, close_by_strain, close_with_slack, closing_strains};
 
 /// The rollers that one wheel carries.
 #[derive(Clone, Copy, Debug, PartialEq)]

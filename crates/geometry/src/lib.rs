@@ -77,7 +77,7 @@ mod two_wheels;
 
 pub use closing::{
     Closing, LinkCounts, RollerPlace, Search, Seating, close_by_motion, close_by_strain,
-    close_nearest, closing_strains,
+    close_nearest, close_with_slack, closing_strains,
 };
 pub use on_span::{CurvedGuide, IdlerByWrap};
 pub use plan::{Plan, Station};

@@ -45,6 +45,7 @@ mod start_time;
 mod start_velocities;
 mod unclosed_chains;
 mod wheels;
+mod worn;
 
 use std::f64::consts::TAU;
 
@@ -64,6 +65,7 @@ use pseudo_transient::Tightening;
 pub use free_trains::FreeTrain;
 pub use newton::Statics;
 pub(crate) use newton::{Curvature, curvature};
+pub use slack::Sag;
 pub use unclosed_chains::Gap;
 
 /// An assembled drive at the start of its run, with positions and velocities.
@@ -300,6 +302,7 @@ impl Drive {
             free_trains::let_go(&mut system, &moving);
             statics = settled
                 .map_err(|error| laid_through_a_guide(&laid).unwrap_or(error))
+                .map_err(|error| worn::named(error, &laid.parts, &fittings))
                 .map_err(|error| overload::named(error, &system, &laid.parts, (&q, &torques)))?;
         }
         for train in trains.iter().filter(|it| it.speed != 0.0) {

@@ -281,9 +281,11 @@ pub struct Fit {
     /// Where the chain carries the pretension.
     pub at: PretensionAt,
     /// Growth of the frame against chain and sprockets since they were fitted, such as that of a warm housing of aluminium \[–\]: a pretension, sag or
-    /// slack is that before it. Spans grow as the frame does, and wraps do not; links are made shorter by as much instead.
+    /// slack is that before it. All bodies move apart by as much about the origin, and links keep their lengths. There is one frame: where chains tell
+    /// different ones, that of the first which grows.
     pub growth: f64,
-    /// Sag of the slack span \[m\], made by the body that is moved; none: no more slack than the closing leaves.
+    /// Sag of the slack span \[m\] where all slack hangs there and the other spans are straight, made by the body that is moved; none: no more
+    /// slack than the closing leaves.
     pub sag: Option<f64>,
     /// The span that takes what the chain is longer than its way, by the stop that it leaves. None: the last one, unless a guide lies along it;
     /// then the longest without a guide.

@@ -152,7 +152,7 @@ pub use accounts::{
 };
 pub use alignment::Alignment;
 pub use articulation::{Articulation, LateralRub};
-pub use assembly::{Assembled, Fitting, FreeTrain, Gap, RollerLayout, Statics};
+pub use assembly::{Assembled, Fitting, FreeTrain, Gap, RollerLayout, Sag, Statics};
 pub use bodies::Input;
 pub use body_impacts::BodyImpacts;
 pub use chains::chain::{Chain, End, Ends};

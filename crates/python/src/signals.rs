@@ -61,6 +61,16 @@ impl Onlooker for Interpreter<'_> {
         self.run_in.set(Some(share));
     }
 
+    fn asks_for_time(&self) -> bool {
+        true
+    }
+
+    fn foretell(&self, sentence: &str) {
+        if let Err(error) = log(sentence) {
+            self.raised.borrow_mut().get_or_insert(error);
+        }
+    }
+
     fn see(&self, simulation: &Simulation) {
         self.run_in.set(None);
         let before = self.share.replace(simulation.progress());
@@ -68,6 +78,16 @@ impl Onlooker for Interpreter<'_> {
             self.look(self.progress);
         }
     }
+}
+
+/// A line in the log of the package.
+fn log(line: &str) -> PyResult<()> {
+    Python::attach(|py| {
+        let logger = py
+            .import("logging")?
+            .call_method1("getLogger", ("chaindrive",))?;
+        logger.call_method1("warning", (line,)).map(drop)
+    })
 }
 
 /// Does something that nobody can interrupt, while Python looks at its signals.

@@ -45,6 +45,49 @@ pub struct Cost {
     pub unless_chosen_for: Option<f64>,
 }
 
+impl Cost {
+    /// Wall time expected for the run and the least run-in before it \[s\].
+    pub fn whole_time(&self) -> f64 {
+        self.run_time + self.run_in_least_time.max(0.0)
+    }
+}
+
+/// Steps of a run from which on those that are measured are no more than one in a hundred.
+const MANY_STEPS: f64 = 5e4;
+/// Wall time of a step for every coordinate \[s\] above which no chain is known. *Assumed*: clearance joints take a tenth of it.
+const SLOWEST: f64 = 5e-5;
+
+/// Wall time that a run is foretold to take \[s\]: by its first steps, which are taken for that where it has so many that they cost nothing, or so
+/// many coordinates that it could take `long` \[s\]. None where it cannot.
+///
+/// # Errors
+/// As [`Simulation::from_assembled`].
+pub fn foretold(
+    assembled: &Assembled,
+    run: &Run,
+    long: f64,
+) -> Result<Option<f64>, SimulationError> {
+    let method = run.method(&assembled.system);
+    let steps = run.until / method.step().min(run.until);
+    let longest = steps * assembled.system.free_dofs() as f64 * SLOWEST;
+    if steps < MANY_STEPS && longest < long {
+        return Ok(None);
+    }
+    Ok(Some(measure(assembled, run)?.whole_time()))
+}
+
+/// What is said before a run begins that will take so long \[s\].
+pub fn foretelling(seconds: f64) -> String {
+    let told = if seconds < 5400.0 {
+        format!("{:.0} min", seconds / 60.0)
+    } else {
+        format!("{:.1} h", seconds / 3600.0)
+    };
+    format!(
+        "the run will take about {told}; a shorter `until`, softer links and contacts or a larger accuracy make it shorter: `describe` tells steps and run time"
+    )
+}
+
 /// Steps to warm up with, and to measure, at most.
 const WARM_UP: f64 = 100.0;
 const MEASURED: f64 = 400.0;

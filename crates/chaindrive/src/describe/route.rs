@@ -8,7 +8,7 @@ use chaindrive_mechanics::{Assembled, Drive, Fitting, Layout, Observation, Place
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::at_start;
+use super::{SagFacts, at_start};
 
 /// A body of the route.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
@@ -218,4 +218,22 @@ fn taut(drive: &Drive, run: &ChainRun<'_>, stops: &[Stop], start: &Observation) 
     };
     let wheels: Option<Vec<Wheel>> = stops.iter().map(wheel).collect();
     Route::taut(&wheels?).ok()
+}
+
+/// The sag that a chain was fitted with, where one was asked for.
+pub(super) fn sag(assembled: &Assembled, chain: usize) -> Option<SagFacts> {
+    let sag = assembled.sag(chain)?;
+    let drive = &assembled.drive;
+    let Layout::Route { stops, .. } = &drive.chains[chain].layout else {
+        return None;
+    };
+    let name = |place: usize| match stops[place % stops.len()] {
+        Stop::Sprocket(index) => drive.sprockets[index].name.as_str(),
+        Stop::Guide(index) => drive.guides[index].name.as_str(),
+    };
+    Some(SagFacts {
+        span: format!("{}-{}", name(sag.span), name(sag.span + 1)),
+        asked: sag.asked,
+        shared: sag.shared,
+    })
 }

@@ -37,6 +37,9 @@ impl fmt::Display for Description {
         for remark in &self.against_practice {
             writeln!(sheet, "good practice: {remark}")?;
         }
+        for note in &self.implausible {
+            writeln!(sheet, "hardly plausible: {note}")?;
+        }
         f.write_str(&aligned(&sheet, NAMES))
     }
 }
@@ -288,10 +291,22 @@ impl fmt::Display for Closing {
             }
             (Some(name), _) => write!(f, "{name} moved by {:.3} mm", self.travel * 1e3),
         }?;
-        match self.growth {
-            Some(growth) => write!(f, "; the housing then grew by {}", strained(growth)),
-            None => Ok(()),
+        if let Some(growth) = self.growth {
+            write!(f, "; the housing then grew by {}", strained(growth))?;
         }
+        let Some(sag) = &self.sag else {
+            return Ok(());
+        };
+        let [asked, shared, both] = [sag.asked, sag.shared, sag.asked * sag.asked / sag.shared];
+        write!(
+            f,
+            "; {} sags by {:.1} mm where the others are taut, and by {:.1} mm where nothing pulls and all share the slack (`sag = \"{:.1} mm\"` makes that {:.1} mm)",
+            sag.span,
+            asked * 1e3,
+            shared * 1e3,
+            both * 1e3,
+            asked * 1e3,
+        )
     }
 }
 

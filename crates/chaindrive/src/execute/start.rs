@@ -10,12 +10,16 @@ use chaindrive_integrate::{IntegrationError, Method};
 use chaindrive_mechanics::{Assembled, Drive};
 
 use super::RunError;
-use crate::interruptible::assemble;
+use crate::describe::{foretelling, foretold};
+use crate::interruptible::{assemble, patiently};
 use crate::precision::{Choice, Estimate, ShortRuns, choose_with, estimate};
 use crate::record::Provenance;
 use crate::run_in::{Onlooker, RecordStart, check_sprocket, check_turns, record_start};
 use crate::summary::Summary;
 use crate::{Channel, Request, Run, RunIn, Simulation, SimulationError};
+
+/// Wall time \[s\] from which on a run says before it begins how long it will take.
+const LONG: f64 = 600.0;
 
 /// A drive as it was assembled, with the method and step of its run.
 pub(super) struct Setup {
@@ -107,6 +111,18 @@ impl Setup {
             short_runs: Some(short_runs),
             is_verified: false,
         })
+    }
+
+    /// Tells the onlooker how long the run will take, where that is long.
+    pub(super) fn foretell(&self, onlooker: &dyn Onlooker) -> Result<(), SimulationError> {
+        let (start, run) = (self.assembled.clone(), self.provenance.run.clone());
+        let trial = move || foretold(&start, &run, LONG);
+        // What goes wrong in the first steps is told by the run.
+        let time = patiently(trial, &|| onlooker.stop())?.ok().flatten();
+        if let Some(time) = time.filter(|it| *it > LONG) {
+            onlooker.foretell(&foretelling(time));
+        }
+        Ok(())
     }
 
     /// The simulation of the assembled drive.

@@ -8,6 +8,7 @@ use chaindrive_mechanics::Extremes;
 use crate::chain_verdict::CheckOutcome;
 use crate::describe::left_out;
 use crate::figure::{Measure, Scale, duration, figure, percent};
+use crate::plausibility::implausible;
 use crate::precision::Judgement;
 use crate::rating::{Load, Rating, told_hours};
 use crate::summary::{Bodies, ForceRecord, SprocketStatistics, Steadiness, Summary};
@@ -431,9 +432,13 @@ impl PageContent<'_> {
 
     fn inputs(&self) -> Section {
         let mut section = Section::new("assumed inputs", "");
-        let left_out = left_out(&self.simulation.assembled().drive);
+        let drive = &self.simulation.assembled().drive;
+        let left_out = left_out(drive);
         let left_out = (!left_out.is_empty())
             .then(|| format!("The model leaves out {}.", left_out.join(", ")));
+        let notes = implausible(drive, None).into_iter();
+        let notes = notes.map(|it| format!("Hardly plausible: {it}."));
+        let left_out: Vec<String> = left_out.into_iter().chain(notes).collect();
         let assumed = self.assumed;
         if assumed.is_empty() {
             section.sentences.extend(left_out);

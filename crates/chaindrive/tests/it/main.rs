@@ -32,6 +32,7 @@ mod misuse;
 mod motors;
 mod object_store;
 mod one_force;
+mod plausibility;
 mod precision;
 mod reproducible;
 mod requests;

@@ -1,11 +1,11 @@
 //! Drives that torques turn, chains that sag on purpose, and what is said of those that cannot be.
+#![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::f64::consts::{PI, TAU};
 
 use chaindrive::describe::spans_at_rest;
 use chaindrive::scene::Scene;
-use chaindrive::{Run, Simulation};
-use chaindrive_geometry::Point;
+use chaindrive::{Description, Run, Simulation};
 use chaindrive_mechanics::Assembled;
 
 /// Teeth and inertia \[kg m²\] of motor and conveyor.
@@ -322,14 +322,7 @@ adjust = {{ kind = "sprocket", name = "driven", direction = [1, 0], within = "20
         let radius = 0.5 * PITCH / (PI / 19.0).sin();
         let chord = if at == 1 { radius } else { -radius };
         let middle = 0.5 * assembled.fittings[0].as_ref().unwrap().wheels[1].centre.x;
-        let run = Run::default();
-        let mut simulation = Simulation::from_assembled(assembled.clone(), &run).unwrap();
-        let seen = simulation.next_sample().unwrap().unwrap();
-        let places = seen.roller_x.iter().zip(&seen.roller_y);
-        let rollers: Vec<Point> = places.map(|(x, y)| Point::new(*x, *y)).collect();
-        let near = rollers.iter().filter(|it| (it.y - chord).abs() < 2.0 * sag);
-        let lowest = near.min_by(|a, b| (a.x - middle).abs().total_cmp(&(b.x - middle).abs()));
-        let found = chord - lowest.unwrap().y;
+        let found = depth_of_sag(&assembled, chord, middle);
         // The ends of the bow lie on polygons, and what the load stretches hangs there too.
         assert!(
             (found / sag - 1.0).abs() < 0.05,
@@ -349,6 +342,113 @@ adjust = {{ kind = "sprocket", name = "driven", direction = [1, 0], within = "20
         .replace("pretension = \"800 N\"", "sag = 0.01")
         .replace("adjust =", "#");
     assert!(refused(&nothing).contains("nothing is moved to make it"));
+}
+
+/// Without a load both runs share the slack, and each hangs f/√2 deep; what the closing tells of it is that.
+#[test]
+fn runs_that_nothing_pulls_share_the_slack() {
+    let text = r#"
+[chain]
+type = "08B-1"
+links = 124
+[[sprockets]]
+name = "driver"
+teeth = 19
+centre = [0, 0]
+motion = { kind = "constant", speed = "60 rpm" }
+[[sprockets]]
+name = "driven"
+teeth = 19
+centre = ["660 mm", 0]
+inertia = 0.05
+[route]
+sag = "13 mm"
+slack_span = "driver-driven"
+adjust = { kind = "sprocket", name = "driven", direction = [1, 0], within = "20 mm" }
+"#;
+    let assembled = assembled(text).unwrap();
+    let told = Description::of_assembled(&assembled, &Run::default()).unwrap();
+    let sag = told.chains[0]
+        .closing
+        .as_ref()
+        .unwrap()
+        .sag
+        .clone()
+        .unwrap();
+    assert_eq!((sag.span.as_str(), sag.asked), ("driver-driven", 13e-3));
+    assert!(
+        (sag.shared * 2.0_f64.sqrt() / 13e-3 - 1.0).abs() < 1e-3,
+        "{}",
+        sag.shared
+    );
+    assert!(
+        told.to_string()
+            .contains("`sag = \"18.4 mm\"` makes that 13.0 mm"),
+        "{told}"
+    );
+    let radius = 0.5 * PITCH / (PI / 19.0).sin();
+    let middle = 0.5 * assembled.fittings[0].as_ref().unwrap().wheels[1].centre.x;
+    let found = depth_of_sag(&assembled, -radius, middle);
+    assert!(
+        (found / sag.shared - 1.0).abs() < 0.05,
+        "{found} for {}",
+        sag.shared
+    );
+}
+
+/// How deep the roller nearest to the middle of a run hangs below its chord \[m\].
+fn depth_of_sag(assembled: &Assembled, chord: f64, middle: f64) -> f64 {
+    let mut simulation = Simulation::from_assembled(assembled.clone(), &Run::default()).unwrap();
+    let seen = simulation.next_sample().unwrap().unwrap();
+    let places = seen.roller_x.iter().zip(&seen.roller_y);
+    let near = places.filter(|(_, y)| (*y - chord).abs() < 0.04);
+    let nearest = near.min_by(|a, b| (a.0 - middle).abs().total_cmp(&(b.0 - middle).abs()));
+    chord - nearest.unwrap().1
+}
+
+/// A worn chain on the centres that a new one had: two equal sprockets, some pitches apart.
+fn worn(teeth: u32, links: u32, pitches: f64, elongation: f64) -> String {
+    format!(
+        r#"
+[chain]
+pitch = "12.7 mm"
+links = {links}
+mass = "9 g"
+stiffness = "20 MN/m"
+roller_diameter = "8.51 mm"
+elongation = {elongation}
+[[sprockets]]
+name = "a"
+teeth = {teeth}
+centre = [0, 0]
+motion = "held"
+[[sprockets]]
+name = "b"
+teeth = {teeth}
+centre = ["{} mm", 0]
+inertia = 0.02
+"#,
+        pitches * 12.7
+    )
+}
+
+/// What a chain has worn hangs as slack, more than a pitch of it too; a chain that its teeth do not hold is refused with that reason.
+#[test]
+fn worn_chains_hang_on_their_old_centres() {
+    let hung = assembled(&worn(20, 90, 35.0, 0.015)).unwrap();
+    let spans = tensions(&hung);
+    // T = w L²/8 f, f = √(3 L e/8), e: half of 90 · 1.5 % p
+    let (chord, spare) = (35.0 * PITCH, 0.5 * 90.0 * 0.015 * PITCH);
+    let weight = 9e-3 / PITCH * 9.81;
+    let pull = weight * chord * chord / (8.0 * (0.375 * chord * spare).sqrt());
+    for tension in spans {
+        assert!((tension / pull - 1.0).abs() < 0.2, "{tension} for {pull}");
+    }
+    let error = refused(&worn(100, 200, 50.0, 0.04));
+    assert!(
+        error.contains("rides 8.1 mm above its pitch circle") && error.contains("it jumps"),
+        "{error}"
+    );
 }
 
 /// A drive that torques turn begins at the phase of the scene, however loosely its chain lies in the teeth, and does not look for another one.

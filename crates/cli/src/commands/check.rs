@@ -1,7 +1,8 @@
 //! `chaindrive check`: are these scenes sound?
 
-use chaindrive::describe::{counted, warnings};
-use chaindrive::{Run, assemble};
+use chaindrive::describe::{counted, foretold, warnings};
+use chaindrive::plausibility::implausible;
+use chaindrive::{Run, assemble, patiently};
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -62,7 +63,12 @@ struct Contents {
     degrees_of_freedom: usize,
     /// Objections that do not keep it from running.
     warnings: Vec<String>,
+    /// What hardly any machine is like, with the limit and its source.
+    implausible: Vec<String>,
 }
+
+/// Wall time of a run \[s\] that is worth a note.
+const LONG: f64 = 3600.0;
 
 pub(crate) fn check(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Result<(), Failure> {
     let mut wrong = 0;
@@ -107,6 +113,9 @@ impl Contents {
         for warning in &self.warnings {
             say(format_args!("warning: {name}: {warning}"));
         }
+        for note in &self.implausible {
+            say(format_args!("note: {name}: hardly plausible: {note}"));
+        }
         let chain = match self.chains {
             1 => counted(self.links, "link"),
             chains => format!("{chains} chains of {} links", self.links),
@@ -128,6 +137,14 @@ fn sound(name: &str, interrupted: &dyn Fn() -> bool) -> Result<Contents, Failure
     let assembled = waiting(&what, interrupted, |stop| assemble(&drive, stop));
     let assembled = Failure::or_interrupted(assembled, scene.name())?;
     let run = Run::suggested(&scene.run_defaults());
+    let start = assembled.clone();
+    let trial = run.clone();
+    let time = waiting(&what, interrupted, |stop| {
+        patiently(move || foretold(&start, &trial, LONG), stop)
+    });
+    // What goes wrong in the first steps is told by the run.
+    let time = Failure::or_interrupted(time, scene.name())?;
+    let time = time.ok().flatten();
     Ok(Contents {
         chains: drive.chains.len(),
         links: assembled.system.links(),
@@ -136,5 +153,9 @@ fn sound(name: &str, interrupted: &dyn Fn() -> bool) -> Result<Contents, Failure
         tensioners: drive.tensioners.len(),
         degrees_of_freedom: assembled.system.free_dofs(),
         warnings: warnings(&assembled, run.until),
+        implausible: implausible(&drive, time)
+            .iter()
+            .map(ToString::to_string)
+            .collect(),
     })
 }

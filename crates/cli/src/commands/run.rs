@@ -244,6 +244,14 @@ impl Onlooker for Terminal<'_> {
     fn see_run_in(&self, share: f64) {
         self.progress.borrow_mut().run_in(share);
     }
+
+    fn asks_for_time(&self) -> bool {
+        true
+    }
+
+    fn foretell(&self, sentence: &str) {
+        say(format_args!("note: {sentence}"));
+    }
 }
 
 /// The page that ends the run, and its numerics where they are asked for.

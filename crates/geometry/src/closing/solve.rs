@@ -24,9 +24,22 @@ pub fn close_by_strain(
     links: u32,
     phase: f64,
 ) -> Result<(f64, Closing), GeometryError> {
+    close_with_slack(wheels, pitch, (links, 0.0), phase)
+}
+
+/// The same of a chain that is known to be longer than its way: by `slack` \[m\] more than one that [closes by strain](close_by_strain) may be.
+///
+/// # Errors
+/// Those of [`close_by_strain`], beyond that slack.
+pub fn close_with_slack(
+    wheels: &[Wheel],
+    pitch: f64,
+    (links, slack): (u32, f64),
+    phase: f64,
+) -> Result<(f64, Closing), GeometryError> {
     let unstrained = Closing::march(wheels, pitch, phase)?;
     let excess = unstrained.excess(links);
-    if excess.abs() > MOST_MISFIT * pitch {
+    if excess > MOST_MISFIT * pitch || -excess > MOST_MISFIT * pitch + slack {
         return Err(does_not_close(wheels, None, pitch, links)?);
     }
     let free = f64::from(unstrained.spans.iter().sum::<u32>().max(1));

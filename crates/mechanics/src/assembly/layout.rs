@@ -1,10 +1,12 @@
 //! Layout of the rollers before any force acts.
 
-use chaindrive_geometry::{Wheel, close_by_motion, close_by_strain};
+use chaindrive_geometry::{
+    Closing, Point, Vector, Wheel, close_by_motion, close_by_strain, close_with_slack,
+};
 
-use super::wheels::{shifted, wheels};
-use super::{Fitting, slack};
-use crate::drive::{Adjust, Fit, Layout, PretensionAt, Stop, Tighten};
+use super::wheels::{grown, shifted, wheels};
+use super::{Fitting, slack, worn};
+use crate::drive::{Adjust, Fit, Layout, Parts, PretensionAt, Stop, Tighten};
 use crate::system::{LaidChain, LaidDrive};
 use crate::{AssemblyError, Drive};
 
@@ -12,11 +14,23 @@ use crate::{AssemblyError, Drive};
 const SLACK: f64 = -1e-6;
 
 /// Lays the chains as their layouts say, one after the other; what an earlier one has moved stays where it is.
+///
+/// A frame that grows does so when all of them are fitted: its bodies move apart, and the links keep their lengths.
 pub(super) fn lay(drive: &Drive) -> Result<(LaidDrive, Vec<Option<Fitting>>), AssemblyError> {
     let mut laid = laid_nothing(drive);
     let chains = 0..laid.parts.chains.len();
-    let fittings: Result<_, _> = chains.map(|index| lay_one(&mut laid, index)).collect();
-    Ok((laid, fittings?))
+    let fittings: Result<Vec<_>, _> = chains.map(|index| lay_one(&mut laid, index)).collect();
+    let mut fittings = fittings?;
+    let mut growths = drive.chains.iter().map(|placed| placed.layout.growth());
+    if let Some(growth) = growths.find(|growth| *growth != 0.0) {
+        laid.parts = grown(&laid.parts, growth)?;
+        for (index, fitting) in fittings.iter_mut().enumerate() {
+            if let Some(fitting) = fitting {
+                lay_again(&mut laid, index, fitting)?;
+            }
+        }
+    }
+    Ok((laid, fittings))
 }
 
 /// A drive before its chains are laid.
@@ -47,25 +61,105 @@ pub(super) fn lay_one(
         Layout::Route {
             stops, phase, fit, ..
         } => {
-            let sprockets = laid.parts.sprockets.iter().map(|s| s.name.clone());
-            let guides = laid.parts.guides.iter().map(|g| g.name.clone());
-            let (sprockets, guides): (Vec<_>, Vec<_>) = (sprockets.collect(), guides.collect());
-            let name = |stop: usize| match stops.get(stop) {
-                Some(Stop::Sprocket(index)) => format!("`{}`", sprockets[*index]),
-                Some(Stop::Guide(index)) => format!("`{}`", guides[*index]),
-                None => format!("stop {stop}"),
-            };
             let fitting = around(laid, index, stops, *phase, fit);
-            let called = laid.parts.chains[index].name.clone();
-            let told = |error: AssemblyError| {
-                let named = error.with_names(&name);
-                named.of_chains(std::iter::once(called.as_ref()))
-            };
-            let fitting = fitting.map_err(&told)?;
-            grow(laid, index, (stops, *phase, fit), &fitting).map_err(&told)?;
+            let fitting = fitting.map_err(|error| named(error, &laid.parts, index, stops))?;
             Ok(Some(fitting))
         }
     }
+}
+
+/// An error that calls the chain and the stops of its route by their names.
+fn named(error: AssemblyError, parts: &Parts, index: usize, stops: &[Stop]) -> AssemblyError {
+    let name = |stop: usize| match stops.get(stop) {
+        Some(Stop::Sprocket(index)) => format!("`{}`", parts.sprockets[*index].name),
+        Some(Stop::Guide(index)) => format!("`{}`", parts.guides[*index].name),
+        None => format!("stop {stop}"),
+    };
+    let called = parts.chains[index].name.as_ref();
+    error.with_names(&name).of_chains(std::iter::once(called))
+}
+
+/// Lays a chain of the lengths that it has around stops that have moved since it was fitted.
+fn lay_again(
+    laid: &mut LaidDrive,
+    index: usize,
+    fitting: &mut Fitting,
+) -> Result<(), AssemblyError> {
+    let layout = laid.parts.chains[index].layout.clone();
+    let Layout::Route {
+        stops, phase, fit, ..
+    } = &layout
+    else {
+        return Ok(());
+    };
+    let again = |parts: &Parts| {
+        let chain = &parts.chains[index].chain;
+        let wheels = wheels(parts, chain, stops)?;
+        let slack_span = match fit.slack {
+            Some(span) => span,
+            None => slack::span(parts, index, stops, &wheels)?,
+        };
+        let links = u32::try_from(chain.links()).unwrap_or(u32::MAX);
+        let pitch = chain.lengths.iter().sum::<f64>() / f64::from(links);
+        let longer = worn::longer(chain);
+        let closed = close(&wheels, (pitch, links, longer, *phase), |strain| {
+            (strain < SLACK).then_some((slack_span, parts.gravity))
+        })?;
+        Ok((wheels, closed))
+    };
+    let (wheels, closed) =
+        again(&laid.parts).map_err(|error| named(error, &laid.parts, index, stops))?;
+    seat(laid, stops, &closed.closing);
+    laid.chains[index].positions = closed.positions;
+    fitting.seated = closed.closing.seats.iter().map(|it| it.pitches).collect();
+    fitting.spans = closed.closing.spans;
+    fitting.wheels = wheels;
+    Ok(())
+}
+
+/// A chain of so many links around wheels.
+struct Closed {
+    /// Strain that closes its links \[–\].
+    strain: f64,
+    closing: Closing,
+    /// Its rollers \[m\].
+    positions: Vec<Point>,
+}
+
+/// Closes a chain of a pitch \[m\] and so many links, too long by up to a known length \[m\], at a phase around wheels: straight, or with a bow where
+/// `slack` names the span and gravity for the strain.
+fn close(
+    wheels: &[Wheel],
+    (pitch, links, longer, phase): (f64, u32, f64, f64),
+    slack: impl Fn(f64) -> Option<(usize, Vector)>,
+) -> Result<Closed, AssemblyError> {
+    let (strain, closing) = close_with_slack(wheels, pitch, (links, longer), phase)?;
+    let (positions, closing) = if let Some((span, gravity)) = slack(strain) {
+        slack::sagging(wheels, span, (pitch, links), phase, gravity)?
+    } else {
+        let places = closing.positions(wheels, pitch * (1.0 + strain))?;
+        (
+            places.into_iter().map(|place| place.position).collect(),
+            closing,
+        )
+    };
+    Ok(Closed {
+        strain,
+        closing,
+        positions,
+    })
+}
+
+/// Turns the sprockets of a route to where the rollers sit on them, and names them.
+fn seat(laid: &mut LaidDrive, stops: &[Stop], closing: &Closing) -> Vec<usize> {
+    let mut route = Vec::new();
+    for (stop, seat) in stops.iter().zip(&closing.seats) {
+        if let Stop::Sprocket(index) = stop {
+            laid.gap_angles[*index] = seat.first_angle;
+            route.push(*index);
+        }
+    }
+    route
 }
 
 fn around(
@@ -130,25 +224,22 @@ fn around(
         Adjust::Nothing => at_rest,
         _ => wheels(&moved, chain, stops)?,
     };
-    let (strain, closing) = close_by_strain(&wheels, pitch, links, phase)?;
-    let slack = strain < SLACK && fit.pretension <= 0.0;
-    let (positions, closing) = if slack {
-        slack::sagging(&wheels, slack_span, (pitch, links), phase, parts.gravity)?
+    let gravity = parts.gravity;
+    // A pretension by shorter links takes no slack.
+    let longer = if fit.pretension > 0.0 {
+        0.0
     } else {
-        let places = closing.positions(&wheels, pitch * (1.0 + strain))?;
-        (
-            places.into_iter().map(|place| place.position).collect(),
-            closing,
-        )
+        worn::longer(chain)
     };
-
-    let mut route = Vec::new();
-    for (stop, seat) in stops.iter().zip(&closing.seats) {
-        if let Stop::Sprocket(index) = stop {
-            laid.gap_angles[*index] = seat.first_angle;
-            route.push(*index);
-        }
-    }
+    let Closed {
+        strain,
+        closing,
+        positions,
+    } = close(&wheels, (pitch, links, longer, phase), |strain| {
+        (strain < SLACK && fit.pretension <= 0.0).then_some((slack_span, gravity))
+    })?;
+    worn::check(parts, stops, &closing, pitch)?;
+    let route = seat(laid, stops, &closing);
     let mut moved = moved;
     if fit.pretension > 0.0 && !by_travel {
         let closed = if over_a_tooth {
@@ -180,52 +271,6 @@ fn around(
         travel,
         wheels,
     })
-}
-
-/// Shortens the links of a chain whose frame grows after it was fitted.
-///
-/// ```text
-/// ℓ₀ ← ℓ₀ (1 + s ε)/(1 + s ε_apart)      ε: strain of the closing, of the share s of links off the sprockets
-/// ```
-///
-/// To first order that is a frame that has grown around a chain as it was.
-fn grow(
-    laid: &mut LaidDrive,
-    index: usize,
-    (stops, phase, fit): (&[Stop], f64, &Fit),
-    fitting: &Fitting,
-) -> Result<(), AssemblyError> {
-    if fit.growth.abs() <= 0.0 {
-        return Ok(());
-    }
-    let chain = &mut laid.parts.chains[index].chain;
-    let pitch = chain.pitch;
-    let links = u32::try_from(chain.links()).unwrap_or(u32::MAX);
-    // s ε
-    let stretch = |wheels: &[Wheel], phase: f64| {
-        let (strain, closing) = close_by_strain(wheels, pitch, links, phase)?;
-        let seats = stops.iter().zip(&closing.seats);
-        let on_sprockets = seats.filter(|(stop, _)| matches!(stop, Stop::Sprocket(_)));
-        let seated: u32 = on_sprockets.map(|(_, seat)| seat.pitches).sum();
-        Ok(strain * (1.0 - f64::from(seated) / f64::from(links)))
-    };
-    let closes = |wheels: &[Wheel]| {
-        if fit.at == PretensionAt::MeanPhase {
-            mean_of_phases(|phase| stretch(wheels, phase))
-        } else {
-            stretch(wheels, phase)
-        }
-    };
-    let apart = |wheel: &Wheel| Wheel {
-        centre: wheel.centre * (1.0 + fit.growth),
-        ..*wheel
-    };
-    let apart: Vec<Wheel> = fitting.wheels.iter().map(apart).collect();
-    let scale = (1.0 + closes(&fitting.wheels)?) / (1.0 + closes(&apart)?);
-    for length in &mut chain.lengths {
-        *length *= scale;
-    }
-    Ok(())
 }
 
 /// Phases that the mean over a tooth is taken of.

@@ -2,8 +2,54 @@
 
 use chaindrive_geometry::{Closing, Point, Route, Span, Vector, Wheel};
 
-use crate::drive::{GuideSupport, Parts, Stop};
-use crate::{AssemblyError, Chain};
+use crate::drive::{GuideSupport, Layout, Parts, Stop};
+use crate::{Assembled, AssemblyError, Chain};
+
+/// Sag that a chain was fitted with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sag {
+    /// The slack span, by the stop that it leaves.
+    pub span: usize,
+    /// Sag of its middle \[m\] that was asked for: all slack hangs there, and the other spans are straight.
+    pub asked: f64,
+    /// Sag of its middle \[m\] where nothing pulls and every span has the same tension: they share the slack.
+    pub shared: f64,
+}
+
+impl Assembled {
+    /// Sag that a chain was fitted with, where one was asked for.
+    ///
+    /// ```text
+    /// f_shared = f √(w² L³/Σ wᵢ² Lᵢ³)      w, L: weight a length across the span, and its length
+    /// ```
+    ///
+    /// From e = 8 f²/3 L and f = w L²/8 T of every span, with one T. What the links stretch is left out.
+    pub fn sag(&self, chain: usize) -> Option<Sag> {
+        let placed = &self.parts.chains[chain];
+        let wheels = &self.fittings[chain].as_ref()?.wheels;
+        let Layout::Route { stops, fit, .. } = &placed.layout else {
+            return None;
+        };
+        let asked = fit.sag?;
+        let found = |span| Some(span);
+        let span = fit
+            .slack
+            .map_or_else(|| span(&self.parts, chain, stops, wheels).ok(), found)?;
+        let spans = Route::taut(wheels).ok()?.spans;
+        // w² L³: gravity across the span, squared
+        let gravity = self.parts.gravity;
+        let share = |it: &Span| {
+            let along = (it.arrives - it.leaves) / it.length;
+            (gravity.norm_squared() - gravity.dot(&along).powi(2)) * it.length.powi(3)
+        };
+        let all: f64 = spans.iter().map(share).sum();
+        Some(Sag {
+            span,
+            asked,
+            shared: asked * (share(&spans[span]) / all).sqrt(),
+        })
+    }
+}
 
 /// The span that takes the slack where nobody says so, by the stop that it leaves: the last one, unless a guide lies along it; then the longest along
 /// which none lies.

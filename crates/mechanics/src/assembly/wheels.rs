@@ -1,6 +1,6 @@
 //! The stops of a route as wheels, at rest and moved.
 
-use chaindrive_geometry::{Piece, Side, Vector, Wheel, WheelKind};
+use chaindrive_geometry::{ArcSpline, Piece, Point, Side, Vector, Wheel, WheelKind};
 
 use crate::drive::{Adjust, Guide, GuideSupport, Layout, Parts, Stop, Support, Touches};
 use crate::{AssemblyError, Chain, Drive};
@@ -139,6 +139,50 @@ pub(super) fn shifted(parts: &Parts, adjust: &Adjust, travel: f64) -> Result<Par
             }
             parts.tensioners[*tensioner].carrier = carrier.assembled_at(travel);
         }
+    }
+    Ok(parts)
+}
+
+/// The parts where a frame that grows by `growth` takes them, about the origin.
+///
+/// ```text
+/// x ← x (1 + g)      centres of sprockets, pivots of arms, middles of guides
+/// ```
+///
+/// Bodies keep their shapes, for they do not grow with the frame: what an arm or a slide carries moves with its pivot, or as its first body does.
+pub(super) fn grown(parts: &Parts, growth: f64) -> Result<Parts, AssemblyError> {
+    let mut parts = parts.clone();
+    let way = |place: Point| place.coords * growth;
+    let middle = |face: &ArcSpline| face.point_at(0.5 * face.length());
+    let carried_by = |index: usize| {
+        let mut sprockets = parts.sprockets.iter();
+        let sprocket = sprockets.find(|it| it.support == Support::Tensioner(index));
+        let mut guides = parts.guides.iter();
+        let guide = guides.find(|it| it.support == GuideSupport::Tensioner(index));
+        let first = sprocket.map(|it| it.centre);
+        first.or_else(|| guide.map(|it| middle(&it.face)))
+    };
+    let carriers = parts.tensioners.iter().enumerate();
+    let carriers: Vec<Vector> = carriers
+        .map(|(index, it)| it.carrier.pivot().or_else(|| carried_by(index)))
+        .map(|place| place.map_or_else(Vector::zeros, way))
+        .collect();
+    for sprocket in &mut parts.sprockets {
+        sprocket.centre += match sprocket.support {
+            Support::Tensioner(index) => carriers[index],
+            _ => way(sprocket.centre),
+        };
+    }
+    for guide in &mut parts.guides {
+        let by = match guide.support {
+            GuideSupport::Tensioner(index) => carriers[index],
+            _ => way(middle(&guide.face)),
+        };
+        let pieces = guide.face.pieces().iter().map(|it| it.translated(by));
+        guide.face = ArcSpline::open(&pieces.collect::<Vec<_>>())?;
+    }
+    for (tensioner, by) in parts.tensioners.iter_mut().zip(carriers) {
+        tensioner.carrier = tensioner.carrier.translated(by);
     }
     Ok(parts)
 }

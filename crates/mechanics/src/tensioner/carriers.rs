@@ -94,6 +94,17 @@ trait CarrierModel: Copy {
         *self
     }
 
+    /// The point of the frame that it turns about, where it turns.
+    fn pivot(&self) -> Option<Point> {
+        None
+    }
+
+    /// The same carrier on a frame that has moved.
+    fn translated(&self, by: Vector) -> Self {
+        let _ = by;
+        *self
+    }
+
     /// Its own mass \[kg\] or moment of inertia \[kg m²\] that goes with s, where it is given, and the key that gives it.
     fn inertia(&self) -> (&'static str, Option<f64>);
 
@@ -250,6 +261,19 @@ impl Carrier {
         match self {
             Self::Slider(slider) => Self::Slider(slider.assembled_at(s)),
             Self::Arm(arm) => Self::Arm(arm.assembled_at(s)),
+        }
+    }
+
+    /// The point of the frame that it turns about \[m\], where it turns.
+    pub(crate) fn pivot(&self) -> Option<Point> {
+        ask!(self, carrier => carrier.pivot())
+    }
+
+    /// The same carrier on a frame that has moved by some way \[m\].
+    pub(crate) fn translated(self, by: Vector) -> Self {
+        match self {
+            Self::Slider(slider) => Self::Slider(slider.translated(by)),
+            Self::Arm(arm) => Self::Arm(arm.translated(by)),
         }
     }
 }

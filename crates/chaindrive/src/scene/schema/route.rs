@@ -25,8 +25,8 @@ pub(crate) struct Route {
     /// How the pretension is made; absent: by shorter links.
     #[serde(default)]
     pub(crate) tighten: Tighten,
-    /// Sag of the slack span in its middle [m] at rest under its own weight, made by what `adjust` moves, instead of a pretension;
-    /// absent: none is asked for.
+    /// Sag of the slack span in its middle [m] under its own weight with the other spans pulled straight, made by what `adjust` moves, instead of
+    /// a pretension; where nothing pulls, the spans share the slack, and two equal ones sag 0.71 times as deep. Absent: none is asked for.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub(crate) sag: Option<Length>,
     /// Name of the span, "from-to", that hangs where the chain is longer than its way; absent: the one that runs to the first stop,

@@ -74,7 +74,7 @@ const CRATES: [Storeys; 6] = [
             &["summary"],
             &["run_in"],
             &["precision"],
-            &["chain_verdict", "statistic"],
+            &["chain_verdict", "plausibility", "statistic"],
             &["verdict"],
             &["describe"],
             &["page"],

@@ -159,4 +159,20 @@ impl CarrierModel for Arm {
         });
         Self { plunger, ..*self }
     }
+
+    fn pivot(&self) -> Option<Point> {
+        Some(self.pivot)
+    }
+
+    fn translated(&self, by: Vector) -> Self {
+        let plunger = self.plunger.map(|plunger| Plunger {
+            at: plunger.at + by,
+            ..plunger
+        });
+        Self {
+            pivot: self.pivot + by,
+            plunger,
+            ..*self
+        }
+    }
 }
