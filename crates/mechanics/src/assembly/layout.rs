@@ -3,8 +3,8 @@
 use chaindrive_geometry::{Wheel, close_by_motion, close_by_strain};
 
 use super::wheels::{shifted, wheels};
-use super::{Fitting, slack};
-use crate::drive::{Adjust, Fit, Layout, PretensionAt, Stop, Tighten};
+use super::{Fitting, remedies, slack};
+use crate::drive::{Adjust, Fit, Layout, Parts, PretensionAt, Stop, Tighten};
 use crate::system::{LaidChain, LaidDrive};
 use crate::{AssemblyError, Drive};
 
@@ -57,12 +57,13 @@ pub(super) fn lay_one(
             };
             let fitting = around(laid, index, stops, *phase, fit);
             let called = laid.parts.chains[index].name.clone();
-            let told = |error: AssemblyError| {
-                let named = error.with_names(&name);
+            let told = |error: AssemblyError, parts: &Parts| {
+                let named = remedies::told(error.with_names(&name), parts, index, fit);
                 named.of_chains(std::iter::once(called.as_ref()))
             };
-            let fitting = fitting.map_err(&told)?;
-            grow(laid, index, (stops, *phase, fit), &fitting).map_err(&told)?;
+            let fitting = fitting.map_err(|error| told(error, &laid.parts))?;
+            let grown = grow(laid, index, (stops, *phase, fit), &fitting);
+            grown.map_err(|error| told(error, &laid.parts))?;
             Ok(Some(fitting))
         }
     }
