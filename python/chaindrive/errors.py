@@ -7,8 +7,9 @@ A warning points at the line of the program that called this package, and filter
 class: ``warnings.filterwarnings("error", category=chaindrive.VerdictWarning)``. Python reads its
 option ``-W`` before it can import packages: there, all of them are ``UserWarning``. Functions print
 nothing. A run that nobody watches by ``progress`` and that takes more than a second and a half says
-once what goes on, as a line of the logger ``chaindrive`` at the level ``WARNING``, which Python shows
-unless told otherwise; ``logging.getLogger("chaindrive").setLevel(logging.ERROR)`` keeps it quiet.
+once what goes on, as a line of the logger ``chaindrive`` at the level ``WARNING``, which Python
+shows unless told otherwise; ``logging.getLogger("chaindrive").setLevel(logging.ERROR)`` keeps it
+quiet.
 ``logging.captureWarnings(True)`` puts warnings into the log of a program too.
 """
 

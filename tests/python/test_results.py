@@ -372,7 +372,7 @@ def test_python_and_the_command_do_the_same_with_every_preset(tmp_path, preset, 
 
 
 def test_the_log_is_told_what_a_long_run_does():
-    """A line within two seconds, at a level that Python shows; it ends the run here, as any function of a program might."""
+    """A line within two seconds, at a level that Python shows; a signal then ends the run."""
 
     class Impatient(logging.Handler):
         def emit(self, record):
