@@ -159,10 +159,7 @@ mod tests {
         ]
     }
 
-    fn lay<'w>(
-        wheels: &'w [Wheel],
-        order: [usize; 3],
-    ) -> impl Fn(&[usize]) -> Option<Vec<Wheel>> + 'w {
+    fn lay(wheels: &[Wheel], order: [usize; 3]) -> impl Fn(&[usize]) -> Option<Vec<Wheel>> {
         move |places| Some(places.iter().map(|at| wheels[order[*at]]).collect())
     }
 

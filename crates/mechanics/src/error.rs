@@ -229,7 +229,7 @@ pub enum AssemblyError {
         /// The stops that it carries.
         carried: String,
         /// The stops before and after.
-        between: [String; 2],
+        between: Box<[String; 2]>,
         /// What would make it push onto the chain.
         remedy: String,
     },

@@ -10,7 +10,7 @@ use super::rearranging::{RouteOf, told};
 use super::wheels::{shifted, wheels};
 use crate::drive::{Adjust, Layout, Parts, Support};
 use crate::tensioner::Weight;
-use crate::{AssemblyError, Carrier, Push};
+use crate::{AssemblyError, Push};
 
 /// Length of the route \[pitches\] that a push may give away until it is spent: less is adjustment.
 const GIVEN_AWAY: f64 = 0.5;
@@ -78,10 +78,10 @@ fn away(route: &RouteOf<'_>, tensioner: usize) -> Option<AssemblyError> {
     let count = route.stops.len();
     let [before, after] = [count - 1, 1].map(|step| route.name((first + step) % count));
     let names: Vec<String> = carried.iter().map(|stop| route.name(*stop)).collect();
-    let turn = match (&own.push, &own.carrier) {
-        (Push::TorsionSpring(_), _) => "turn the sign of its preload",
-        (_, Carrier::Arm(_)) => "turn the direction of its plunger round",
-        (_, Carrier::Slider(_)) => "turn its direction round",
+    let turn = match (own.carrier.coordinate_unit(), own.carrier.push_unit()) {
+        ("m", _) => "turn its direction round",
+        (_, "N") => "turn the direction of its plunger round",
+        _ => "turn the sign of its preload",
     };
     let other = fewest.map_or_else(
         || format!("put {} elsewhere in `stops`", names.join(" and ")),
@@ -90,7 +90,7 @@ fn away(route: &RouteOf<'_>, tensioner: usize) -> Option<AssemblyError> {
     Some(AssemblyError::PushesAway {
         tensioner: own.name.clone(),
         carried: names.join(" and "),
-        between: [before, after],
+        between: Box::new([before, after]),
         remedy: format!("{turn}, or {other}"),
     })
 }

@@ -4,8 +4,8 @@ use chaindrive_geometry::{GeometryError, Remedy, Search, WheelKind, close_neares
 
 use super::rearranging::{RouteOf, advice};
 use super::wheels::{shifted, wheels};
+use crate::AssemblyError;
 use crate::drive::{Adjust, Fit, Parts, Stop};
-use crate::{AssemblyError, Carrier};
 
 /// Farthest that a tensioner is moved in search of a place at which the chain closes \[pitches\], and widest \[rad\].
 const FARTHEST: f64 = 20.0;
@@ -130,6 +130,7 @@ fn by_tensioner(route: &RouteOf<'_>, tensioner: usize) -> Option<String> {
     let links = u32::try_from(placed.links()).ok()?;
     let pitch = placed.lengths.iter().sum::<f64>() / placed.links() as f64;
     let reach = own.carrier.reach();
+    let travels = own.carrier.coordinate_unit() == "m";
     let mut wheels_at = |travel: f64| {
         let moved = shifted(
             route.parts,
@@ -145,15 +146,17 @@ fn by_tensioner(route: &RouteOf<'_>, tensioner: usize) -> Option<String> {
     let search = Search {
         start: 0.0,
         step: 0.1 * pitch / reach,
-        within: match own.carrier {
-            Carrier::Slider(_) => FARTHEST * pitch,
-            Carrier::Arm(_) => (FARTHEST * pitch / reach).min(WIDEST),
+        within: if travels {
+            FARTHEST * pitch
+        } else {
+            (FARTHEST * pitch / reach).min(WIDEST)
         },
     };
     let (travel, ..) = close_nearest(pitch, 0.0, links, 0.5, &mut wheels_at, search).ok()?;
-    let within = match own.carrier {
-        Carrier::Slider(_) => format!("{:.0} mm", (travel.abs() * ROOM * 1e3).ceil()),
-        Carrier::Arm(_) => format!("{:.0} deg", (travel.abs() * ROOM).to_degrees().ceil()),
+    let within = if travels {
+        format!("{:.0} mm", (travel.abs() * ROOM * 1e3).ceil())
+    } else {
+        format!("{:.0} deg", (travel.abs() * ROOM).to_degrees().ceil())
     };
     Some(format!(
         "`adjust = {{ kind = \"{}\", name = \"{}\", within = \"{within}\" }}`",

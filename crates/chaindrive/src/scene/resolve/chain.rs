@@ -61,17 +61,8 @@ fn or_type(text: &schema::Chain) -> &'static str {
     }
 }
 
-pub(super) fn resolve(
-    scene: &SceneText,
-    described: &ChainDescription<'_>,
-    findings: &mut Findings<'_>,
-) -> Option<ResolvedChain> {
-    let written = described.text;
-    // The roller diameter matters where there is a sprocket or guide.
-    let touched = !(described.sprockets.is_empty() && described.guides.is_empty());
-    let of_type = written.of_type.as_ref();
-    let of_type = of_type.map(|name| catalogue::named(name, findings));
-    strands::refuse(written, findings);
+/// Names the keys of other models of a chain, and what its own knows.
+fn refuse_keys(written: &schema::Chain, findings: &mut Findings<'_>) {
     let before = findings.problems.count();
     if written.model.has_springs() {
         links::refuse_on_particles(written, findings);
@@ -85,11 +76,15 @@ pub(super) fn resolve(
         let hint = "one scene serves all models, as in a sweep over `chain.model`, where `type` names a chain of the catalogue and these keys are left out";
         findings.refuse_with("chain.model", written.model.knows(written.rollers), hint);
     }
-    let text = &match of_type {
-        Some(chain) => catalogue::completed(written, chain, findings),
-        None => written.clone(),
-    };
-    let text = &strands::as_one(text, of_type);
+}
+
+/// The pitch \[m\]; one that is that of a worn chain, or in millimetres, is refused.
+fn pitch(
+    text: &schema::Chain,
+    of_type: Option<&CatalogueChain>,
+    touches: bool,
+    findings: &mut Findings<'_>,
+) -> Option<f64> {
     let Some(pitch) = text.pitch.map(f64::from) else {
         findings.refuse_with("chain.pitch", "missing", "give the nominal pitch");
         return None;
@@ -105,12 +100,34 @@ pub(super) fn resolve(
         findings.refuse_with("chain.pitch", message, hint);
         return None;
     }
-    if !described.sprockets.is_empty() && pitch >= METRES {
+    if touches && pitch >= METRES {
         let message = format!("{pitch} m, and no chain on sprockets has such a pitch");
         let hint = format!("a bare number is in metres: write \"{pitch} mm\"");
         findings.refuse_with("chain.pitch", message, hint);
         return None;
     }
+    Some(pitch)
+}
+
+pub(super) fn resolve(
+    scene: &SceneText,
+    described: &ChainDescription<'_>,
+    findings: &mut Findings<'_>,
+) -> Option<ResolvedChain> {
+    let written = described.text;
+    // The roller diameter matters where there is a sprocket or guide.
+    let touched = !(described.sprockets.is_empty() && described.guides.is_empty());
+    let of_type = written.of_type.as_ref();
+    let of_type = of_type.map(|name| catalogue::named(name, findings));
+    strands::refuse(written, findings);
+    refuse_keys(written, findings);
+    let text = &match of_type {
+        Some(chain) => catalogue::completed(written, chain, findings),
+        None => written.clone(),
+    };
+    let text = &strands::as_one(text, of_type);
+    let own = of_type.filter(|_| written.pitch.is_some());
+    let pitch = pitch(text, own, !described.sprockets.is_empty(), findings)?;
     let link_count::Count {
         links: number,
         uncounted,

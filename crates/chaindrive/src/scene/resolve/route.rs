@@ -84,13 +84,12 @@ pub(super) fn layout(
 
 /// An entry of a route that lets something move: the first tensioner, or else the last sprocket.
 fn way_to_move(scene: &SceneText, described: &ChainDescription<'_>) -> String {
-    let (kind, name, more) = match scene.tensioners.first() {
-        Some(tensioner) => (tensioner.carrier.word("kind"), tensioner.name.as_str(), ""),
-        None => {
-            let last = described.sprockets.last();
-            let last = last.map_or("…", |&index| scene.sprockets[index].name.as_str());
-            ("sprocket", last, ", direction = [1, 0]")
-        }
+    let (kind, name, more) = if let Some(tensioner) = scene.tensioners.first() {
+        (tensioner.carrier.word("kind"), tensioner.name.as_str(), "")
+    } else {
+        let last = described.sprockets.last();
+        let last = last.map_or("…", |&index| scene.sprockets[index].name.as_str());
+        ("sprocket", last, ", direction = [1, 0]")
     };
     let within = if kind == "arm" { "5 deg" } else { "5 mm" };
     format!(
