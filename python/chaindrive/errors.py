@@ -5,10 +5,12 @@ known; otherwise they are None.
 
 A warning points at the line of the program that called this package, and filters know it by its
 class: ``warnings.filterwarnings("error", category=chaindrive.VerdictWarning)``. Python reads its
-option ``-W`` before it can import packages: there, all of them are ``UserWarning``. Nothing else is
-said but a line of the logger ``chaindrive`` before a run that is foretold to take above ten
-minutes: functions print nothing. ``logging.captureWarnings(True)`` puts warnings into the log of
-a program.
+option ``-W`` before it can import packages: there, all of them are ``UserWarning``. Functions print
+nothing. The logger ``chaindrive`` has two lines at the level ``WARNING``, which Python shows unless
+told otherwise: before a run that is foretold to take above ten minutes, and after a second and a
+half of a run that nobody watches by ``progress``, what goes on.
+``logging.getLogger("chaindrive").setLevel(logging.ERROR)`` keeps it quiet,
+``logging.captureWarnings(True)`` puts warnings into the log of a program too.
 """
 
 from __future__ import annotations

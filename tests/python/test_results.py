@@ -1,6 +1,9 @@
 """Datasets: dimensions, units, labels, provenance, and numbers that are known."""
 
+import logging
 import math
+import signal
+import time
 import warnings
 
 import numpy as np
@@ -366,6 +369,28 @@ def test_python_and_the_command_do_the_same_with_joints(tmp_path):
 @pytest.mark.parametrize("preset", list(cd.scenes.presets()))
 def test_python_and_the_command_do_the_same_with_every_preset(tmp_path, preset, case):
     same_run(tmp_path, preset, CASES[case])
+
+
+def test_the_log_is_told_what_a_long_run_does():
+    """A line within two seconds, at a level that Python shows; a signal then ends the run."""
+
+    class Impatient(logging.Handler):
+        def emit(self, record):
+            told.append((record.levelname, record.getMessage(), time.perf_counter() - begin))
+            signal.raise_signal(signal.SIGINT)
+
+    told, logger, handler = [], logging.getLogger("chaindrive"), Impatient()
+    logger.addHandler(handler)
+    begin = time.perf_counter()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            cd.simulate(cd.scenes.spinning_ring(), until=1e3, every=1e-3, method="verlet")
+    finally:
+        logger.removeHandler(handler)
+    [(level, message, after)] = told
+    assert level == "WARNING"
+    assert "the run is under way" in message
+    assert after < 4, "two seconds, on a machine that does other things as well"
 
 
 def test_an_interrupted_run_keeps_what_there_is():

@@ -19,6 +19,13 @@ pub(crate) struct SceneArguments {
     #[arg(value_name = "SCENE|PRESET")]
     scene: String,
 
+    #[command(flatten)]
+    changes: Changes,
+}
+
+/// What is changed in a scene.
+#[derive(Debug, Args)]
+pub(crate) struct Changes {
     /// Replaces a value of the scene, such as chain.links=80 or "sprockets.crank.motion.speed=-90 rpm"; a number without a
     /// unit is in SI units, and a speed of rotation in rad/s; may be repeated
     #[arg(long, value_name = "PATH=VALUE")]
@@ -130,7 +137,11 @@ impl SceneArguments {
 
     /// Paths that are changed, and how the command line says so.
     pub(crate) fn given(&self) -> Vec<(String, String)> {
-        let paths = self.set.iter().filter_map(|change| change.split_once('='));
+        let paths = self
+            .changes
+            .set
+            .iter()
+            .filter_map(|change| change.split_once('='));
         paths
             .map(|(path, _)| (path.trim().to_owned(), format!("--set {}", path.trim())))
             .collect()
@@ -138,7 +149,18 @@ impl SceneArguments {
 
     /// The scene with its changes.
     pub(crate) fn load(&self, interrupted: &dyn Fn() -> bool) -> Result<Scene, Failure> {
-        let mut scene = load(&self.scene, interrupted)?;
+        self.changes.made_in(load(&self.scene, interrupted)?)
+    }
+
+    /// Numbers without a unit where a quantity has one: they are in SI units, and perhaps were not meant so.
+    pub(crate) fn notes(&self, scene: &Scene) -> Vec<String> {
+        self.changes.notes(scene)
+    }
+}
+
+impl Changes {
+    /// The scene with the changes.
+    pub(crate) fn made_in(&self, mut scene: Scene) -> Result<Scene, Failure> {
         for change in &self.set {
             let Some((path, value)) = change.split_once('=') else {
                 return Err(Failure::Argument(format!(

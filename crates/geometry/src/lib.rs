@@ -72,6 +72,7 @@ mod closing;
 mod on_span;
 mod plan;
 mod polygon_action;
+mod rearranged;
 mod route;
 mod two_wheels;
 
@@ -84,6 +85,7 @@ pub use plan::{Plan, Station};
 pub use polygon_action::{
     ChordalAction, DrivenState, PolygonAction, PressureAngles, SeatingVelocity, mesh_frequency,
 };
+pub use rearranged::{Rearranged, rearrangements};
 pub use route::{Route, Side, Span, Wheel, WheelKind};
 pub use two_wheels::TwoWheels;
 

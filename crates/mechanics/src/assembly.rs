@@ -39,6 +39,9 @@ mod newton;
 mod overload;
 mod overrun;
 mod pseudo_transient;
+mod pushes_away;
+mod rearranging;
+mod remedies;
 mod rigid_links;
 mod slack;
 mod start_time;
@@ -296,6 +299,7 @@ impl Drive {
         let (torques, moving) = free_trains::balance(&mut system, &trains, &q);
         let mut statics = Vec::new();
         if self.settle {
+            pushes_away::check(&laid.parts)?;
             overload::check(&system, &laid.parts, (&q, &torques))?;
             free_trains::hold(&mut system, &moving, &q);
             let settled = newton::settle(&mut system, &mut q);

@@ -219,6 +219,21 @@ pub enum AssemblyError {
         pull: Option<Box<Pull>>,
     },
 
+    /// A tensioner that pushes what it carries away from the chain.
+    #[error(
+        "tensioner `{tensioner}` pushes {carried} away from the chain, which passes there from {} to {}; {remedy}",
+        .between[0], .between[1]
+    )]
+    PushesAway {
+        tensioner: String,
+        /// The stops that it carries.
+        carried: String,
+        /// The stops before and after.
+        between: Box<[String; 2]>,
+        /// What would make it push onto the chain.
+        remedy: String,
+    },
+
     /// A load that breaks the chain before it is in equilibrium.
     #[error(
         "{pull}, and the chain breaks at {} kN; lower the torque, or take a stronger chain",

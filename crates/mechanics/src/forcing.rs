@@ -201,6 +201,7 @@ fn frequencies(motion: &Motion, repeats: &mut impl FnMut(f64)) {
         | Motion::Constant { .. }
         | Motion::Ramp { .. }
         | Motion::Table(_)
+        | Motion::SpeedTable(_)
         | Motion::Onward(_) => {}
     }
 }
@@ -239,7 +240,7 @@ fn of_time(motion: &Motion) -> Option<&'static str> {
     match motion {
         Motion::Ramp { .. } => Some("a speed that changes at a time"),
         Motion::Harmonics { .. } => Some("a motion by frequencies"),
-        Motion::Table(_) => Some("a motion over time"),
+        Motion::Table(_) | Motion::SpeedTable(_) => Some("a motion over time"),
         Motion::From { motion, .. } => of_time(motion),
         Motion::Held | Motion::Constant { .. } | Motion::Orders { .. } | Motion::Onward(_) => None,
     }

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use crate::DriveError;
-use crate::motion::Table;
 use crate::order::Order;
+use crate::table::Table;
 
 /// A torque on a free shaft \[N m\], counter-clockwise positive; several add up.
 ///

@@ -11,6 +11,9 @@ use crate::errors::OrRaise;
 /// Between two looks at signals.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(50);
 
+/// Silence after which the log is told what goes on.
+const SILENCE: Duration = Duration::from_millis(1500);
+
 /// Python as an onlooker: its signals, and the function that it wants to be told by.
 pub(crate) struct Interpreter<'a> {
     progress: Option<&'a Py<PyAny>>,
@@ -19,6 +22,9 @@ pub(crate) struct Interpreter<'a> {
     /// How far the run-in is, until the run begins.
     run_in: Cell<Option<f64>>,
     looked: Cell<Instant>,
+    began: Instant,
+    /// Whether the log has been told: one line will do.
+    logged: Cell<bool>,
     /// What a signal or the function raised.
     pub(crate) raised: RefCell<Option<PyErr>>,
 }
@@ -30,6 +36,9 @@ impl<'a> Interpreter<'a> {
             share: Cell::new(0.0),
             run_in: Cell::new(None),
             looked: Cell::new(Instant::now()),
+            began: Instant::now(),
+            // Who is told how far a run is needs no log.
+            logged: Cell::new(progress.is_some()),
             raised: RefCell::new(None),
         }
     }
@@ -40,10 +49,43 @@ impl<'a> Interpreter<'a> {
             Some(share) => look_at_run_in(progress, share),
             None => look(progress, self.share.get()),
         };
-        if let Err(error) = looked {
+        let logged = if !self.logged.get() && self.began.elapsed() >= SILENCE {
+            self.logged.set(true);
+            log(&self.under_way())
+        } else {
+            Ok(())
+        };
+        if let Err(error) = looked.and(logged) {
             self.raised.borrow_mut().get_or_insert(error);
         }
     }
+
+    /// What goes on, in words.
+    fn under_way(&self) -> String {
+        match (self.run_in.get(), self.share.get()) {
+            (Some(share), _) => {
+                let percent = share * 100.0;
+                format!(
+                    "the drive is run in before t = 0, {percent:.0} % done; `run_in` sets how long"
+                )
+            }
+            (None, share) if share > 0.0 => {
+                format!("the run is under way, {:.0} % done", share * 100.0)
+            }
+            _ => "the drive is assembled and settled, and its step chosen, before it moves"
+                .to_owned(),
+        }
+    }
+}
+
+/// Tells the log of Python, under the name of the package.
+fn log(what: &str) -> PyResult<()> {
+    Python::attach(|py| {
+        let logger = py
+            .import("logging")?
+            .call_method1("getLogger", ("chaindrive",))?;
+        logger.call_method1("warning", (what,)).map(drop)
+    })
 }
 
 impl Onlooker for Interpreter<'_> {
@@ -80,16 +122,6 @@ impl Onlooker for Interpreter<'_> {
     }
 }
 
-/// A line in the log of the package.
-fn log(line: &str) -> PyResult<()> {
-    Python::attach(|py| {
-        let logger = py
-            .import("logging")?
-            .call_method1("getLogger", ("chaindrive",))?;
-        logger.call_method1("warning", (line,)).map(drop)
-    })
-}
-
 /// Does something that nobody can interrupt, while Python looks at its signals.
 pub(crate) fn patiently<T: Send + 'static>(
     py: Python<'_>,
@@ -103,6 +135,7 @@ pub(crate) fn patiently<T: Send + 'static>(
 /// Lets `work` look at Python's signals, and raises what it found there.
 pub(crate) fn watched<T>(work: impl FnOnce(&dyn Fn() -> bool) -> T) -> (T, PyResult<()>) {
     let interpreter = Interpreter::new(None);
+    interpreter.logged.set(true);
     let answer = work(&|| interpreter.stop());
     (answer, interpreter.raised.into_inner().map_or(Ok(()), Err))
 }

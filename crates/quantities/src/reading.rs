@@ -11,6 +11,12 @@ pub const CONTACT_STIFFNESS: &str = "a contact stiffness";
 /// Name of the quantity whose scale has a zero of its own in degrees Celsius.
 const TEMPERATURE: &str = "a temperature";
 
+/// Powers of a mass per length, as catalogues give that of a chain.
+const MASS_PER_LENGTH: Powers = Powers([-1.0, 1.0, 0.0, 0.0, 0.0]);
+
+/// Powers of a kinematic viscosity.
+const KINEMATIC: Powers = Powers([2.0, 0.0, -1.0, 0.0, 0.0]);
+
 /// Why a text is not the quantity that is needed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Complaint {
@@ -135,7 +141,10 @@ impl Dimension {
                     )),
                     (None, UnitProblem::Unknown(symbol)) => Err(complain(
                         format!("unknown unit `{symbol}` in `{text}`"),
-                        format!("{}; the units are {}", such_as(), unit::known()),
+                        unit::instead_of(&symbol).map_or_else(
+                            || format!("{}; the units are {}", such_as(), unit::known()),
+                            str::to_owned,
+                        ),
                     )),
                     (None, UnitProblem::Grammar(reason)) => Err(complain(
                         format!("`{}` is not a unit: {reason}", rest.trim()),
@@ -188,6 +197,15 @@ impl Dimension {
             "a frequency" if found.matches(turning) => {
                 "a speed of rotation is not a frequency; write \"25 Hz\" for 1500 rpm".into()
             }
+            "a mass" if found.matches(MASS_PER_LENGTH) => {
+                format!("that of a link is this times the pitch, such as \"{}\"", self.example)
+            }
+            "a viscosity" if found.matches(KINEMATIC) => {
+                "times the density it is the dynamic one: 1 cSt of an oil of 870 kg/m^3 is \"0.87 mPa s\"".into()
+            }
+            "a torque" if found.matches(Powers([1.0, 1.0, 0.0, 0.0, 0.0])) => {
+                "a torque is a force times a length: write \"10 lbf ft\" or \"10 N m\"".into()
+            }
             CONTACT_STIFFNESS => match exponent {
                 Some(n) => format!("with exponent = {n} the unit is N/m^{n}"),
                 None => format!("such as \"{}\"", self.example),
@@ -203,6 +221,7 @@ fn name_of(powers: Powers) -> String {
     match known {
         Some(dimension) => dimension.name.to_owned(),
         None if powers.matches(Powers([2.0, 1.0, -3.0, 0.0, 0.0])) => "a power".to_owned(),
+        None if powers.matches(MASS_PER_LENGTH) => "a mass per length".to_owned(),
         None => format!("in {powers}"),
     }
 }

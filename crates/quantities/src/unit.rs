@@ -90,7 +90,7 @@ const fn symbol(
     }
 }
 
-const SYMBOLS: [Symbol; 23] = [
+const SYMBOLS: [Symbol; 30] = [
     symbol("m", 0, 1.0, [1.0, 0.0, 0.0, 0.0, 0.0], true),
     symbol("g", -3, 1.0, [0.0, 1.0, 0.0, 0.0, 0.0], true),
     symbol("s", 0, 1.0, [0.0, 0.0, 1.0, 0.0, 0.0], true),
@@ -109,6 +109,7 @@ const SYMBOLS: [Symbol; 23] = [
     symbol("rev", 0, TAU, [0.0, 0.0, 0.0, 1.0, 0.0], false),
     symbol("rpm", 0, TAU / 60.0, [0.0, 0.0, -1.0, 1.0, 0.0], false),
     symbol("in", 0, 0.0254, [1.0, 0.0, 0.0, 0.0, 0.0], false),
+    symbol("inch", 0, 0.0254, [1.0, 0.0, 0.0, 0.0, 0.0], false),
     symbol("ft", 0, 0.3048, [1.0, 0.0, 0.0, 0.0, 0.0], false),
     symbol("lb", 0, 0.453_592_37, [0.0, 1.0, 0.0, 0.0, 0.0], false),
     symbol(
@@ -118,6 +119,25 @@ const SYMBOLS: [Symbol; 23] = [
         [1.0, 1.0, -2.0, 0.0, 0.0],
         false,
     ),
+    symbol("kgf", 0, 9.806_65, [1.0, 1.0, -2.0, 0.0, 0.0], false),
+    // lbf/in²
+    symbol(
+        "psi",
+        0,
+        4.448_221_615_260_5 / (0.0254 * 0.0254),
+        [-1.0, 1.0, -2.0, 0.0, 0.0],
+        false,
+    ),
+    symbol(
+        "ksi",
+        3,
+        4.448_221_615_260_5 / (0.0254 * 0.0254),
+        [-1.0, 1.0, -2.0, 0.0, 0.0],
+        false,
+    ),
+    symbol("cP", -3, 1.0, [-1.0, 1.0, -1.0, 0.0, 0.0], false),
+    symbol("cSt", -6, 1.0, [2.0, 0.0, -1.0, 0.0, 0.0], false),
+    symbol("L", -3, 1.0, [3.0, 0.0, 0.0, 0.0, 0.0], true),
     symbol("K", 0, 1.0, [0.0, 0.0, 0.0, 0.0, 1.0], false),
     symbol("%", -2, 1.0, [0.0, 0.0, 0.0, 0.0, 0.0], false),
 ];
@@ -141,6 +161,40 @@ const CELSIUS: f64 = 273.15;
 /// The temperature \[K\] of a number of degrees Celsius; none where the unit is another one.
 pub(crate) fn celsius(number: f64, unit: &str) -> Option<f64> {
     matches!(unit.trim(), "degC" | "°C").then_some(number + CELSIUS)
+}
+
+/// Units of the trade that mean several things, or no multiple of any, and what to write in their place.
+const REFUSED: [(&[&str], &str); 6] = [
+    (
+        &["hp", "HP", "bhp", "PS", "ps", "CV", "cv"],
+        "horsepowers differ: write \"0.7457 kW\" for one of 550 ft lbf/s, \"0.7355 kW\" for a metric one",
+    ),
+    (
+        &["SUS", "SSU", "SUV"],
+        "seconds of a viscometer are no multiple of a viscosity; write what a table gives for them in cSt",
+    ),
+    (
+        &["oz", "ounce", "ounces"],
+        "ounces are masses, forces or volumes; write \"28.35 g\" for the mass, \"0.278 N\" for the force",
+    ),
+    (
+        &["ton", "tons"],
+        "tons differ: write \"1 t\" for 1000 kg, \"2000 lb\" for a short ton, \"2240 lb\" for a long one",
+    ),
+    (
+        &["mil", "mils", "thou"],
+        "write \"0.0254 mm\" for a thousandth of an inch",
+    ),
+    (
+        &["degF", "°F", "F"],
+        "write degrees Celsius, (F − 32)/1.8: \"60 degC\" for 140 °F",
+    ),
+];
+
+/// What to write in place of a unit that is not taken.
+pub(crate) fn instead_of(symbol: &str) -> Option<&'static str> {
+    let found = REFUSED.iter().find(|(names, _)| names.contains(&symbol));
+    found.map(|(_, hint)| *hint)
 }
 
 /// The known symbols, for messages.

@@ -253,6 +253,14 @@ impl<'s> Validator<'s> {
             self.common_unit(node, path);
         }
         let here = node.place;
+        if let (Value::Text(text), Expectation::Kinds(members, _)) =
+            (&node.value, Expectation::of(core))
+            && let Some(table) = self.around_quantity(text, members)
+        {
+            let needed = format!("a list; write `{} = [{table}]`", last_key(path));
+            self.wrong_type(node, path, &needed);
+            return;
+        }
         let Value::List(entries) = &mut node.value else {
             self.wrong_type(node, path, "a list");
             return;
@@ -310,6 +318,16 @@ impl<'s> Validator<'s> {
                 place: node.place,
                 node: node.clone(),
             };
+            if let Some(table) = self.around_quantity(name, members) {
+                let message = format!(
+                    "found the quantity \"{}\", needed is a table with a `kind`",
+                    shorten(name)
+                );
+                let problem = Problem::new(path, node.place, message);
+                let hint = format!("write `{} = {table}`", last_key(path));
+                self.refuse(problem.hint(hint));
+                return;
+            }
             if !matches_any(&names, name) {
                 let problem = Problem::new(
                     path,
@@ -362,6 +380,30 @@ impl<'s> Validator<'s> {
         let kind = kind_of(member).unwrap_or_default();
         entry.node.value = Value::Text(kind.to_owned());
         self.table(node, member, path, Some(kind));
+    }
+
+    /// The table of a family that a quantity written in its place was meant for: the first whose one key that must be given takes it.
+    fn around_quantity(&self, text: &str, members: &'s [Json]) -> Option<String> {
+        let first = text.chars().next()?;
+        if !(first.is_ascii_digit() || matches!(first, '-' | '+' | '.')) {
+            return None;
+        }
+        members.iter().find_map(|member| {
+            let required = member.get("required")?.as_array()?.iter();
+            let mut keys = required
+                .filter_map(Json::as_str)
+                .filter(|key| *key != "kind");
+            let (key, None) = (keys.next()?, keys.next()) else {
+                return None;
+            };
+            let property = self.schema.core(&member["properties"][key]);
+            let Expectation::Quantity(_, dimension) = Expectation::of(property) else {
+                return None;
+            };
+            dimension.read(text, None).ok()?;
+            let kind = kind_of(member)?;
+            Some(format!("{{ kind = \"{kind}\", {key} = \"{text}\" }}"))
+        })
     }
 
     fn word(&mut self, node: &mut Node, words: &[&str], path: &str) {
@@ -492,6 +534,11 @@ fn unknown_key(
             (near, problem.hint(one_of(&entry.key, known)))
         }
     }
+}
+
+/// The key at the end of a path.
+fn last_key(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or(path)
 }
 
 /// A path with one more step.

@@ -30,6 +30,7 @@ mod loads;
 mod mistakes;
 mod misuse;
 mod motors;
+mod newcomer;
 mod object_store;
 mod one_force;
 mod plausibility;

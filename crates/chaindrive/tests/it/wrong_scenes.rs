@@ -75,7 +75,10 @@ const CASES: &[Mistake] = &[
     // Quantities.
     ("300 rpm", "12 mm", "sprockets[0].motion.speed", 17, "`12 mm` is a length, needed is an angular speed; such as \"1500 rpm\""),
     ("300 rpm", "5 1/s", "sprockets[0].motion.speed", 17, "1/s and Hz count events"),
-    ("25.4 mm", "1 inch", "chain.pitch", 4, "unknown unit `inch`"),
+    ("25.4 mm", "1 zoll", "chain.pitch", 4, "unknown unit `zoll`"),
+    ("25.4 mm", "1 mil", "chain.pitch", 4, "write \"0.0254 mm\" for a thousandth of an inch"),
+    ("\"68.8 g\"", "\"2.71 kg/m\"", "chain.mass", 6, "a mass per length, needed is a mass; that of a link is this times the pitch"),
+    ("\"-40 N m\"", "\"-40 lb ft\"", "sprockets[1].load[0].torque", 23, "write \"10 lbf ft\""),
     ("25.4 mm", "25,4 mm", "chain.pitch", 4, "decimals are written with a point"),
     ("25.4 mm", "25.4", "chain.pitch", 4, "`25.4` has no unit"),
     ("\"25.4 mm\"", "nan", "chain.pitch", 4, "NaN is not a finite number"),

@@ -11,7 +11,7 @@ use crate::answer::answer;
 use crate::complaint::Trouble;
 use crate::failure::Failure;
 use crate::progress::waiting;
-use crate::request::load;
+use crate::request::{Changes, load};
 use crate::terminal::{print, say, tell};
 
 /// Reads scenes, assembles their drives, and reports everything that is wrong.
@@ -20,6 +20,9 @@ pub(crate) struct Arguments {
     /// Scene files, `-` for stdin, or names of embedded scenes
     #[arg(value_name = "SCENE|PRESET", required = true)]
     scenes: Vec<String>,
+
+    #[command(flatten)]
+    changes: Changes,
 
     /// Prints JSON
     #[arg(long)]
@@ -79,7 +82,7 @@ pub(crate) fn check(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Re
             sound: None,
             error: None,
         };
-        match sound(name, interrupted) {
+        match sound(name, arguments, interrupted) {
             Ok(contents) => {
                 if !arguments.json {
                     contents.show(name)?;
@@ -130,8 +133,16 @@ impl Contents {
     }
 }
 
-fn sound(name: &str, interrupted: &dyn Fn() -> bool) -> Result<Contents, Failure> {
-    let scene = load(name, interrupted)?;
+fn sound(
+    name: &str,
+    arguments: &Arguments,
+    interrupted: &dyn Fn() -> bool,
+) -> Result<Contents, Failure> {
+    let changes = &arguments.changes;
+    let scene = changes.made_in(load(name, interrupted)?)?;
+    if !arguments.json {
+        changes.notes(&scene).iter().for_each(say);
+    }
     let drive = scene.drive()?;
     let what = format!("{name}: assembling");
     let assembled = waiting(&what, interrupted, |stop| assemble(&drive, stop));

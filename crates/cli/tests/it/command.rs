@@ -358,6 +358,23 @@ fn every_preset_is_sound() {
     assert_eq!((code, out.lines().count()), (0, names.len()), "{err}");
 }
 
+/// As `run` and `describe` do, for every scene that is named.
+#[test]
+fn what_is_set_is_checked() {
+    let folder = folder();
+    let scenes = ["check", "marine_two_sprockets", "industrial_16b", "--set"];
+    let (code, out, _) = run(
+        folder.path(),
+        &[&scenes[..], &["route.pretension=2 kN"]].concat(),
+    );
+    assert_eq!((code, out.lines().count()), (0, 2), "{out}");
+    let (code, _, err) = run(folder.path(), &[&scenes[..], &["chain.links=60"]].concat());
+    assert_eq!(code, 2, "{err}");
+    assert_eq!(err.matches("60 links do not close").count(), 2, "{err}");
+    let (_, _, err) = run(folder.path(), &[&scenes[..], &["chain.lnks=60"]].concat());
+    assert!(err.contains("--set chain.lnks"), "{err}");
+}
+
 #[test]
 fn a_description_is_text_or_json() {
     let folder = folder();

@@ -2,7 +2,7 @@
 
 use super::Closing;
 use super::misfit::does_not_close;
-use super::search::bisect;
+use super::search::{Outcome, Search, bisect, outward};
 use crate::{GeometryError, Wheel};
 
 /// Slack or shortness beyond which a chain is the wrong one rather than a strained one, in pitches.
@@ -86,7 +86,25 @@ pub fn close_by_motion(
         let closing = Closing::march(&wheels, stretched, phase)?;
         Ok((closing.excess(links), (wheels, closing)))
     };
-    if let Some((place, (wheels, closing))) = bisect(&mut trial, range)? {
+    let found = match bisect(&mut trial, range) {
+        Ok(found) => found,
+        // Where no chain can be laid at an end of the range, it may still be near the middle.
+        Err(error) => {
+            let within = 0.5 * (range.1 - range.0);
+            let search = Search {
+                start: range.0.midpoint(range.1),
+                step: within / 16.0,
+                within,
+            };
+            return match outward(stretched, links, phase, moving, search).map_err(|_| error)? {
+                Outcome::Closes(place, wheels, closing) => Ok((place, wheels, closing)),
+                Outcome::Nowhere { nearest, farthest } => {
+                    Err(does_not_close(&nearest, Some(&farthest), stretched, links)?)
+                }
+            };
+        }
+    };
+    if let Some((place, (wheels, closing))) = found {
         return Ok((place, wheels, closing));
     }
     let (at_begin, (begin, _)) = trial(range.0)?;

@@ -5,7 +5,7 @@ use chaindrive_geometry::{
 };
 
 use super::wheels::{grown, shifted, wheels};
-use super::{Fitting, slack, worn};
+use super::{Fitting, remedies, slack, worn};
 use crate::drive::{Adjust, Fit, Layout, Parts, PretensionAt, Stop, Tighten};
 use crate::system::{LaidChain, LaidDrive};
 use crate::{AssemblyError, Drive};
@@ -62,21 +62,28 @@ pub(super) fn lay_one(
             stops, phase, fit, ..
         } => {
             let fitting = around(laid, index, stops, *phase, fit);
-            let fitting = fitting.map_err(|error| named(error, &laid.parts, index, stops))?;
+            let fitting =
+                fitting.map_err(|error| named(error, &laid.parts, index, (stops, fit)))?;
             Ok(Some(fitting))
         }
     }
 }
 
-/// An error that calls the chain and the stops of its route by their names.
-fn named(error: AssemblyError, parts: &Parts, index: usize, stops: &[Stop]) -> AssemblyError {
+/// An error that calls the chain and the stops of its route by their names, with what would mend it.
+fn named(
+    error: AssemblyError,
+    parts: &Parts,
+    index: usize,
+    (stops, fit): (&[Stop], &Fit),
+) -> AssemblyError {
     let name = |stop: usize| match stops.get(stop) {
         Some(Stop::Sprocket(index)) => format!("`{}`", parts.sprockets[*index].name),
         Some(Stop::Guide(index)) => format!("`{}`", parts.guides[*index].name),
         None => format!("stop {stop}"),
     };
     let called = parts.chains[index].name.as_ref();
-    error.with_names(&name).of_chains(std::iter::once(called))
+    let told = remedies::told(error.with_names(&name), parts, index, fit);
+    told.of_chains(std::iter::once(called))
 }
 
 /// Lays a chain of the lengths that it has around stops that have moved since it was fitted.
@@ -108,7 +115,7 @@ fn lay_again(
         Ok((wheels, closed))
     };
     let (wheels, closed) =
-        again(&laid.parts).map_err(|error| named(error, &laid.parts, index, stops))?;
+        again(&laid.parts).map_err(|error| named(error, &laid.parts, index, (stops, fit)))?;
     seat(laid, stops, &closed.closing);
     laid.chains[index].positions = closed.positions;
     fitting.seated = closed.closing.seats.iter().map(|it| it.pitches).collect();

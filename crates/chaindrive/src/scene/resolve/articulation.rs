@@ -59,6 +59,11 @@ impl<'a> Joints<'a> {
         let own = joint.and_then(|it| it.contact.friction.as_ref());
         let journal = Journal {
             spring: self.spring(),
+            unknown: if self.link_stiffness.is_none() {
+                "; or give `chain.stiffness`, from which it follows"
+            } else {
+                "; or give `chain.joint.pin_diameter`, from which and from the stiffness of a link it follows"
+            },
             length: self.length(),
             relative_clearance: self.relative_clearance(),
         };

@@ -9,7 +9,7 @@ use super::law::Pair;
 use super::scatter::Normal;
 use super::stack::Parts;
 use super::{Findings, catalogue, link_count, links, motion, strands};
-use crate::catalogue::CatalogueChain;
+use crate::catalogue::{CatalogueChain, Number};
 use crate::scene::defaults;
 use crate::scene::schema::{self, SceneText};
 
@@ -46,6 +46,69 @@ impl ResolvedChain {
     }
 }
 
+/// Pitch \[m\] from which one around sprockets is taken for millimetres. *Assumed*: the longest in catalogues has half of it.
+const METRES: f64 = 2.0;
+
+/// Excess of a pitch over that of its type \[–\] which is wear and no other chain. *Assumed*: chains are scrapped at 3 %.
+const WORN: std::ops::Range<f64> = 1e-3..0.05;
+
+/// That a type would give what is missing, where none is named.
+fn or_type(text: &schema::Chain) -> &'static str {
+    if text.of_type.is_none() {
+        "; or name a `type`, such as \"16B-1\""
+    } else {
+        ""
+    }
+}
+
+/// Names the keys of other models of a chain, and what its own knows.
+fn refuse_keys(written: &schema::Chain, findings: &mut Findings<'_>) {
+    let before = findings.problems.count();
+    if written.model.has_springs() {
+        links::refuse_on_particles(written, findings);
+    } else {
+        links::refuse_of_particles(written, findings);
+    }
+    if !written.model.has_play() && !written.is_of_points() {
+        articulation::refuse_play(written, findings);
+    }
+    if findings.problems.count() > before + 1 {
+        let hint = "one scene serves all models, as in a sweep over `chain.model`, where `type` names a chain of the catalogue and these keys are left out";
+        findings.refuse_with("chain.model", written.model.knows(written.rollers), hint);
+    }
+}
+
+/// The pitch \[m\]; one that is that of a worn chain, or in millimetres, is refused.
+fn pitch(
+    text: &schema::Chain,
+    of_type: Option<&CatalogueChain>,
+    touches: bool,
+    findings: &mut Findings<'_>,
+) -> Option<f64> {
+    let Some(pitch) = text.pitch.map(f64::from) else {
+        findings.refuse_with("chain.pitch", "missing", "give the nominal pitch");
+        return None;
+    };
+    if let Some(own) = of_type.and_then(|chain| chain.number(Number::Pitch))
+        && WORN.contains(&(pitch / own - 1.0))
+    {
+        let elongation = (pitch / own - 1.0) * 100.0;
+        let message = format!("{pitch} m, and the pitch of its type is {own} m");
+        let hint = format!(
+            "sprockets are cut for the nominal pitch: leave it out, and for a worn chain give `elongation = \"{elongation:.2} %\"`"
+        );
+        findings.refuse_with("chain.pitch", message, hint);
+        return None;
+    }
+    if touches && pitch >= METRES {
+        let message = format!("{pitch} m, and no chain on sprockets has such a pitch");
+        let hint = format!("a bare number is in metres: write \"{pitch} mm\"");
+        findings.refuse_with("chain.pitch", message, hint);
+        return None;
+    }
+    Some(pitch)
+}
+
 pub(super) fn resolve(
     scene: &SceneText,
     described: &ChainDescription<'_>,
@@ -57,21 +120,14 @@ pub(super) fn resolve(
     let of_type = written.of_type.as_ref();
     let of_type = of_type.map(|name| catalogue::named(name, findings));
     strands::refuse(written, findings);
-    if written.model.has_springs() {
-        links::refuse_on_particles(written, findings);
-    }
-    if !written.model.has_play() && !written.is_of_points() {
-        articulation::refuse_play(written, findings);
-    }
+    refuse_keys(written, findings);
     let text = &match of_type {
         Some(chain) => catalogue::completed(written, chain, findings),
         None => written.clone(),
     };
     let text = &strands::as_one(text, of_type);
-    let Some(pitch) = text.pitch.map(f64::from) else {
-        findings.refuse_with("chain.pitch", "missing", "give the nominal pitch");
-        return None;
-    };
+    let own = of_type.filter(|_| written.pitch.is_some());
+    let pitch = pitch(text, own, !described.sprockets.is_empty(), findings)?;
     let link_count::Count {
         links: number,
         uncounted,
@@ -80,8 +136,14 @@ pub(super) fn resolve(
     let roller_diameter = match text.roller_diameter {
         Some(diameter) => diameter.0,
         None if touched => {
-            let hint = "give the roller diameter, from which teeth and guides follow";
+            let hint = format!(
+                "give the roller diameter, from which teeth and guides follow{}",
+                or_type(written)
+            );
             findings.refuse_with("chain.roller_diameter", "missing", hint);
+            if text.model.has_springs() {
+                let _ = springs(text, number, findings);
+            }
             return None;
         }
         None => {

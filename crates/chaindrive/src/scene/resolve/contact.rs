@@ -229,6 +229,8 @@ pub(super) struct Spring {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Journal {
     pub(super) spring: Option<Spring>,
+    /// What would make the spring known, as the end of a sentence.
+    pub(super) unknown: &'static str,
     /// Length \[m\].
     pub(super) length: Option<f64>,
     /// Radial clearance over the radius \[–\].
@@ -256,8 +258,8 @@ pub(super) fn friction(
     if lubricated || kind == "spring-slider" {
         let spring = journal.spring;
         let spring = spring.map(|it| it.factor.multiple(it.unit));
-        let hint = "give it, such as \"50 MN/m\"; it is known in joints of links whose pins and stiffness are";
-        at.fill(&mut keys, "stiffness", spring, hint)?;
+        let hint = format!("give it, such as \"50 MN/m\"{}", journal.unknown);
+        at.fill(&mut keys, "stiffness", spring, &hint)?;
     }
     at.read(keys, Friction::check)
 }

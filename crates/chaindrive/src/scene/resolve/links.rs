@@ -72,7 +72,7 @@ pub(super) fn refuse_on_particles(text: &schema::Chain, findings: &mut Findings<
 }
 
 /// Keys of the particle chain have no meaning for rigid links.
-fn refuse_of_particles(text: &schema::Chain, findings: &mut Findings<'_>) {
+pub(super) fn refuse_of_particles(text: &schema::Chain, findings: &mut Findings<'_>) {
     let scatter = text.scatter.clone().unwrap_or_default();
     let mut at = findings.at("chain");
     let message = "rigid links have none";
@@ -80,20 +80,24 @@ fn refuse_of_particles(text: &schema::Chain, findings: &mut Findings<'_>) {
         ("mass", text.mass.is_some()),
         ("masses", text.masses.is_some()),
     ];
-    let hint = "give `chain.inner.mass` and `chain.outer.mass`";
+    let hint = "give `chain.inner.mass` and `chain.outer.mass`, or leave it out";
     at.refuse_given(masses, message, hint);
     let stiffnesses = [("stiffnesses", text.stiffnesses.is_some())];
-    at.refuse_given(stiffnesses, message, "give one `stiffness`, or none");
+    at.refuse_given(
+        stiffnesses,
+        message,
+        "give one `stiffness`, or leave it out",
+    );
     let dampings = [
         ("damping", text.damping.is_some()),
         ("damping_ratio", text.damping_ratio.is_some()),
     ];
-    at.refuse_given(dampings, message, "only contacts damp them");
+    at.refuse_given(dampings, message, "only contacts damp them; leave it out");
     let scattered = [
         ("scatter.mass", scatter.mass.0 != 0.0),
         ("scatter.stiffness", scatter.stiffness.0 != 0.0),
     ];
-    at.refuse_given(scattered, message, "only lengths can scatter");
+    at.refuse_given(scattered, message, "only lengths can scatter; leave it out");
 }
 
 /// Values that must be there, and what to say where they are not.
@@ -127,7 +131,6 @@ pub(super) fn resolve(
     roller_length: Option<f64>,
     findings: &mut Findings<'_>,
 ) -> Option<Body> {
-    refuse_of_particles(text, findings);
     let mut needs = RequiredValues {
         findings,
         of_type: text.of_type.clone(),

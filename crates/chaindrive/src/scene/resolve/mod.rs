@@ -237,6 +237,14 @@ impl<'s> Names<'s> {
 
     /// Index of the tensioner of this name.
     fn tensioner(&self, name: &str, mut at: Cursor<'_, '_>) -> Option<usize> {
+        if self.tensioners.is_empty() {
+            let message = format!("no tensioner is named `{name}`");
+            at.refuse(
+                message,
+                "there are none; describe it as one of `[[tensioners]]`",
+            );
+            return None;
+        }
         at.lookup(&self.tensioners, "tensioner", name)
     }
 }

@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use chaindrive_mechanics::{Argument, DriveError, Harmonic, Motion, Order, Table, Torque};
+use chaindrive_mechanics::{
+    Argument, DriveError, Harmonic, Motion, Order, SpeedTable, Table, Torque,
+};
 
 use super::cursor::Cursor;
 use super::ends::Ends;
@@ -178,6 +180,9 @@ fn resolve<P: Copy + Into<f64>, R: Copy + Into<f64>>(
         schema::Motion::Table { times, values } => {
             Motion::Table(table(times, values, "times", at)?)
         }
+        schema::Motion::SpeedTable { times, speeds } => {
+            Motion::SpeedTable(tabled(times, speeds, "times", at, SpeedTable::new)?)
+        }
     })
 }
 
@@ -291,11 +296,21 @@ fn table<A: Copy + Into<f64>, V: Copy + Into<f64>>(
     arguments: &[A],
     values: &[V],
     key: &str,
-    mut at: Cursor<'_, '_>,
+    at: Cursor<'_, '_>,
 ) -> Option<Table> {
+    tabled(arguments, values, key, at, Table::new)
+}
+
+fn tabled<A: Copy + Into<f64>, V: Copy + Into<f64>, T>(
+    arguments: &[A],
+    values: &[V],
+    key: &str,
+    mut at: Cursor<'_, '_>,
+    make: fn(Vec<f64>, Vec<f64>) -> Result<T, DriveError>,
+) -> Option<T> {
     let arguments = arguments.iter().map(|it| (*it).into()).collect();
     let values = values.iter().map(|it| (*it).into()).collect();
-    let table = Table::new(arguments, values).map_err(|error| match error {
+    let table = make(arguments, values).map_err(|error| match error {
         DriveError::Table { problem } => problem.replace("times", key),
         error => error.to_string(),
     });

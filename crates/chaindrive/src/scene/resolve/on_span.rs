@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use chaindrive_geometry::{
-    Closing, CurvedGuide, GeometryError, Plan, Point, Search, Side, Span, Station, Vector, Wheel,
-    close_nearest,
+    Closing, CurvedGuide, GeometryError, Plan, Point, Rearranged, Search, Side, Span, Station,
+    Vector, Wheel, close_nearest, rearrangements,
 };
 use chaindrive_mechanics::{Sprocket, Touches};
 
@@ -213,6 +213,12 @@ impl<'s> GuidedChain<'s> {
                 .collect::<Result<_, _>>()?,
         };
         let links = u32::try_from(links).map_err(|_| "more links than a chain can have")?;
+        if let Err(error) = plan.lay() {
+            let name = |wheel: usize| format!("`{}`", self.stops.get(wheel).unwrap_or(&"?"));
+            let other = self.other_order(guide, f64::from(links), start);
+            let other = other.map_or_else(String::new, |it| format!("; {it}"));
+            return Err(format!("{}{other}", error.with_names(&name)));
+        }
         let mut moving = |bow: f64| {
             let plan = plan.moved(stop, Vector::zeros(), bow - start);
             plan.lay().unwrap_or_default()
@@ -235,6 +241,36 @@ impl<'s> GuidedChain<'s> {
             }
         })?;
         Ok(bow)
+    }
+}
+
+impl GuidedChain<'_> {
+    /// The order of the stops in which a chain of about so many links can lie around them, with a bow \[m\] of a guide that leaves it open.
+    fn other_order(&self, guide: &Guide, links: f64, bow: f64) -> Option<String> {
+        let lay = |order: &[usize]| {
+            let other = Self {
+                stops: order.iter().map(|stop| self.stops[*stop]).collect(),
+                ..*self
+            };
+            let open = |name: &str| (name == guide.name).then_some(bow);
+            let stations = other.stops.iter().enumerate();
+            let stops = stations.map(|(stop, name)| other.station(stop, open(name)));
+            let stops = stops.collect::<Result<_, _>>().ok()?;
+            Plan { stops }.lay().ok()
+        };
+        let [pitch, ..] = self.size;
+        let found = rearrangements(self.stops.len(), &lay, pitch);
+        let moved = found.iter().filter(|it| it.turned.is_none());
+        let best = Rearranged::nearest(moved, links)?;
+        let names = best
+            .order
+            .iter()
+            .map(|stop| format!("\"{}\"", self.stops[*stop]));
+        let names: Vec<String> = names.collect();
+        Some(format!(
+            "with `stops = [{}]` the chain can lie around all of them",
+            names.join(", ")
+        ))
     }
 }
 

@@ -44,12 +44,15 @@ pub(super) fn layout(
     let adjust = adjust?;
     let tighten = route.tighten;
     if tighten == Tighten::Travel && adjust == Adjust::Nothing {
-        let hint = "say in `route.adjust` what moves, or take `rest-length`";
+        let hint = format!(
+            "give {}, or take `rest-length`",
+            way_to_move(scene, described)
+        );
         findings.refuse_with("route.tighten", "nothing is there to travel", hint);
     }
     if route.sag.is_some() {
         if adjust == Adjust::Nothing {
-            let hint = "say in `route.adjust` which sprocket or tensioner makes it";
+            let hint = format!("give {}", way_to_move(scene, described));
             findings.refuse_with("route.sag", "nothing is moved to make it", hint);
         }
         if route.pretension.0 > 0.0 {
@@ -77,6 +80,21 @@ pub(super) fn layout(
                 .or_chosen(route.pretension_at, &defaults::PRETENSION_AT),
         },
     })
+}
+
+/// An entry of a route that lets something move: the first tensioner, or else the last sprocket.
+fn way_to_move(scene: &SceneText, described: &ChainDescription<'_>) -> String {
+    let (kind, name, more) = if let Some(tensioner) = scene.tensioners.first() {
+        (tensioner.carrier.word("kind"), tensioner.name.as_str(), "")
+    } else {
+        let last = described.sprockets.last();
+        let last = last.map_or("…", |&index| scene.sprockets[index].name.as_str());
+        ("sprocket", last, ", direction = [1, 0]")
+    };
+    let within = if kind == "arm" { "5 deg" } else { "5 mm" };
+    format!(
+        "`adjust = {{ kind = \"{kind}\", name = \"{name}\"{more}, within = \"{within}\" }}` beside it, which says what moves"
+    )
 }
 
 /// The stop that the slack span leaves, where one is named; a wrong name is a finding.

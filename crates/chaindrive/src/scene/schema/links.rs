@@ -25,6 +25,27 @@ pub(crate) enum ChainModel {
 }
 
 impl ChainModel {
+    /// What such a chain is described by, in words.
+    pub(crate) fn knows(self, rollers: Option<Rollers>) -> &'static str {
+        match (self, rollers) {
+            (Self::Particles, Some(Rollers::Free)) => {
+                "particles with free rollers know masses of `inner` and `outer`, `joint`, `roller`, `outer_first`, `stiffness`, and `damping` or `damping_ratio`"
+            }
+            (Self::Particles, _) => {
+                "particles know `mass`, `stiffness`, `damping` or `damping_ratio`, and of `joint` what rubs and damps"
+            }
+            (Self::BushStrands, _) => {
+                "bush strands know `strands`, `mass`, `stiffness`, `damping` or `damping_ratio`, `outer_first`, `joint.clearance`, and of `joint` what rubs and damps"
+            }
+            (Self::IdealJoints, _) => {
+                "links with ideal joints know `inner`, `outer`, `outer_first`, `roller`, `rollers`, `stiffness`, and of `joint` what rubs and damps"
+            }
+            (Self::ClearanceJoints, _) => {
+                "links with clearance joints know `inner`, `outer`, `outer_first`, `joint`, `roller`, `rollers`, `stiffness`"
+            }
+        }
+    }
+
     /// True for links that are springs with dampers.
     pub(crate) fn has_springs(self) -> bool {
         matches!(self, Self::Particles | Self::BushStrands)

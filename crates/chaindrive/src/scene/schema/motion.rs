@@ -54,12 +54,20 @@ pub(crate) enum Motion<Position, Rate> {
         /// The orders.
         terms: Vec<OrderTerm<Position>>,
     },
-    /// Values at given times, joined by a natural cubic spline.
+    /// Values at given times, joined by a natural cubic spline: smooth, and between them it may run beyond them.
     Table {
         /// Times [s], increasing.
         times: Vec<Time>,
         /// Position (an angle, or a length) at each of them.
         values: Vec<Position>,
+    },
+    /// Speeds at given times, joined by straight lines and held beyond the ends; the position follows from them. What stands between two
+    /// speeds of zero stands still.
+    SpeedTable {
+        /// Times [s], increasing.
+        times: Vec<Time>,
+        /// Speed at each of them.
+        speeds: Vec<Rate>,
     },
 }
 

@@ -24,8 +24,8 @@ const CRATES: [Storeys; 6] = [
                 "kinematics",
                 "lanes",
             ],
-            &["engagement", "order"],
-            &["course", "shaft_loss", "watch"],
+            &["engagement", "order", "table"],
+            &["course", "shaft_loss", "speed_table", "watch"],
             &[
                 "articulation",
                 "coupling",
