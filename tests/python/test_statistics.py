@@ -95,3 +95,20 @@ def test_intervals_hold_as_often_as_they_say(
         assert held >= 0.85, statistic
         # Of four blocks Student's t alone is 1.6 times that of many.
         assert ratio < 4.5, statistic
+
+
+def test_what_is_recorded_moves_no_statement() -> None:
+    """Page and attributes of a run, but for its times, whatever it records."""
+    drive = cd.scenes.industrial_16b()
+    settings = {"until": "40 ms", "run_in": "30 ms", "step": 1e-5, "method": "verlet"}
+    told = []
+    for record in ([], ["contact_force", "link_tension"], "all"):
+        run = cd.simulate(drive, record=record, error=False, **settings)
+        numbers = {
+            name: value
+            for name, value in run.attrs.items()
+            if isinstance(value, (int, float)) and not name.endswith(("_time", "_factor", "_step"))
+        }
+        assert len(numbers) > 40
+        told.append((run.attrs["summary"], numbers))
+    assert told[0] == told[1] == told[2]
