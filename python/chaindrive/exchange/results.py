@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -76,15 +77,16 @@ def save(run: xr.Dataset, path: str | PathLike[str]) -> list[Path]:
     if "time" not in run.dims or any(len(of.dims) > 2 for of in _over(run, "time")):
         message = "the dataset is no table: it has no samples over time, or more than one run"
         raise ParameterError(message, "run", "select one run, or write NetCDF")
-    write = _write_csv if file.suffix == ".csv" else _write_parquet
+    make = _csv if file.suffix == ".csv" else _parquet
     tables = {"time": file}
     if "event" in run.dims:
         tables["event"] = file.with_suffix(f".events{file.suffix}")
-    # Both places are found fit before one is written.
+    # Both places are found fit, and packages imported, before one is written.
     places = [(NewFile(table), of) for of, table in tables.items()]
-    for place, of in places:
+    made = [(place, make(_columns(run, of), run.attrs)) for place, of in places]
+    for place, write in made:
         with place as part:
-            write(part, _columns(run, of), run.attrs)
+            write(part)
     return list(tables.values())
 
 
@@ -113,14 +115,14 @@ def _columns(run: xr.Dataset, dimension: str) -> list[_Column]:
     return found
 
 
-def _write_csv(file: Path, columns: list[_Column], _: dict[str, Any]) -> None:
+def _csv(columns: list[_Column], _: dict[str, Any]) -> Callable[[Path], object]:
     # It comes with xarray.
     import pandas as pd
 
     # Every column under its own heading: names of bodies may repeat.
     told = [(_core.cell(heading), _cells(values)) for heading, values, _ in columns]
     table = pd.concat([pd.Series(values, name=heading) for heading, values in told], axis=1)
-    table.to_csv(file, index=False)
+    return lambda file: table.to_csv(file, index=False)
 
 
 def _cells(values: Any) -> Any:
@@ -130,7 +132,7 @@ def _cells(values: Any) -> Any:
     return [_core.cell(it) if isinstance(it, str) else it for it in values.tolist()]
 
 
-def _write_parquet(file: Path, columns: list[_Column], attributes: dict[str, Any]) -> None:
+def _parquet(columns: list[_Column], attributes: dict[str, Any]) -> Callable[[Path], object]:
     arrow = extra("pyarrow", "tables in Parquet")
     parquet = extra("pyarrow.parquet", "tables in Parquet")
     arrays = [arrow.array(_plain(values)) for _, values, _ in columns]
@@ -140,7 +142,8 @@ def _write_parquet(file: Path, columns: list[_Column], attributes: dict[str, Any
     ]
     told = json.dumps(attributes, default=lambda value: np.asarray(value).tolist())
     schema = arrow.schema(fields, metadata={"chaindrive": told})
-    parquet.write_table(arrow.Table.from_arrays(arrays, schema=schema), file)
+    table = arrow.Table.from_arrays(arrays, schema=schema)
+    return lambda file: parquet.write_table(table, file)
 
 
 def _plain(values: Any) -> Any:
