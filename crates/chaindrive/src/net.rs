@@ -61,7 +61,7 @@ static EVERYWHERE: AtomicBool = AtomicBool::new(false);
 /// # Example
 ///
 /// ```
-/// let fault = chaindrive::caught(|| [1, 2][chaindrive::MOST_CIRCUITS as usize]).unwrap_err();
+/// let fault = chaindrive::caught(|| vec![1, 2][chaindrive::MOST_CIRCUITS as usize]).unwrap_err();
 /// assert!(fault.to_string().contains("please report this"));
 /// ```
 pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, ProgramError> {
