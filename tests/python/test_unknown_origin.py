@@ -362,31 +362,9 @@ def outputs(drive: cd.Drive, folder: Path) -> dict[str, str]:
     )
     page = run.drive.summary()
     scene.write_text(drive.text, encoding="utf-8")
-    told = chaindrive(
-        "run",
-        scene,
-        "--until",
-        "0.2ms",
-        "--every",
-        "0.1ms",
-        "--run-in",
-        "0",
-        "--no-error",
-        "--json",
-    )
-    table = chaindrive(
-        "run",
-        scene,
-        "--until",
-        "0.2ms",
-        "--every",
-        "0.1ms",
-        "--run-in",
-        "0",
-        "--no-error",
-        "-o",
-        "-",
-    )
+    times = ["--until", "0.2ms", "--every", "0.1ms", "--run-in", "0", "--no-error"]
+    told = chaindrive("run", scene, *times, "--json")
+    table = chaindrive("run", scene, *times, "-o", "-")
     svg = folder / "a.svg"
     files = cd.save(run, folder / "a.csv")
     chaindrive("draw", scene, "-o", svg)

@@ -76,9 +76,9 @@ pub struct Description {
     pub cost: Cost,
     /// Bodies that take the same room in the plane, and must pass side by side; guides that are too short; motions that fight.
     pub warnings: Vec<String>,
-    /// What of the layout is against good practice, with the limit and its source.
+    /// Departures of the layout from good practice, each with the limit and its source.
     pub against_practice: Vec<String>,
-    /// What hardly any machine is like, with the limit and its source.
+    /// Implausible inputs, each with the limit and its source.
     pub implausible: Vec<String>,
 }
 

@@ -14,11 +14,11 @@ use crate::Origin;
 pub struct ProgramError {
     /// File and line of the source, where they are known.
     pub place: Option<String>,
-    /// What the program said.
+    /// Message of the panic.
     pub message: String,
 }
 
-/// What is to be reported, on one line.
+/// The line that a user reports.
 impl fmt::Display for ProgramError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Origin {

@@ -67,7 +67,7 @@ pub struct Summary {
     carried: ChainDuties,
     names: BodyNames,
     account: Account,
-    #[serde(skip)]
+    /// Cosine and sine of every forcing at the last reading of the spans.
     harmonics: Vec<f64>,
     /// Time of the last sample \[s\].
     ended: f64,
@@ -79,9 +79,8 @@ pub struct SpanStatistics {
     /// Name, "from-to".
     pub name: String,
     blocks: Blocks,
-    /// The last reading: since when it counts, when it was, and the tension; counted from the first reading. Then its harmonics.
+    /// The last reading: since when it counts, when it was, and the tension; counted from the first reading.
     pending: Option<[f64; 3]>,
-    harmonics: Vec<f64>,
     /// Readings, and those without a tension, because no roller holds the span.
     pub readings: u64,
     /// See `readings`.
@@ -95,28 +94,24 @@ impl SpanStatistics {
     }
 
     /// Takes in the tension at a time \[s\] counted from the first reading. A reading stands for the time from half-way after the one before it to
-    /// half-way before the next.
-    /// With it come cosine and sine of every forcing.
-    fn push(&mut self, time: f64, tension: f64, harmonics: &[f64]) {
+    /// half-way before the next; `last`: cosine and sine of every forcing at the one before.
+    fn push(&mut self, time: f64, tension: f64, last: &[f64]) {
         self.readings += 1;
         self.missing += u64::from(!tension.is_finite());
         let mut since = time;
         if let Some([from, read, before]) = self.pending {
             since = 0.5 * (read + time);
             if before.is_finite() {
-                self.blocks.push([from, since], before, &self.harmonics);
+                self.blocks.push([from, since], before, last);
             }
         }
         self.pending = Some([since, time, tension]);
-        self.harmonics.clear();
-        self.harmonics.extend(harmonics);
     }
 
     /// The last reading stands for the time up to the end \[s\], counted from the first.
-    fn end(&mut self, time: f64) {
+    fn end(&mut self, time: f64, last: &[f64]) {
         if let Some([from, _, tension]) = self.pending.take().filter(|it| it[2].is_finite()) {
-            self.blocks
-                .push([from, time.max(from)], tension, &self.harmonics);
+            self.blocks.push([from, time.max(from)], tension, last);
         }
     }
 }
@@ -192,7 +187,6 @@ impl Summary {
             name,
             blocks: Blocks::new(interval, period, together, &forcings),
             pending: None,
-            harmonics: Vec::new(),
             readings: 0,
             missing: 0,
         };
@@ -252,7 +246,7 @@ impl Summary {
         }
         let end = simulation.time() - self.first_reading.unwrap_or_default();
         for span in &mut self.spans {
-            span.end(end);
+            span.end(end, &self.harmonics);
         }
         self.reading = end;
         self.account
@@ -266,12 +260,12 @@ impl Summary {
         let (pressed, phases) = rest.split_at(self.carried.chains());
         let first = *self.first_reading.get_or_insert(time);
         self.reading = time - first;
-        self.harmonics.clear();
-        let waves = phases.iter().map(|phase| phase.sin_cos());
-        self.harmonics.extend(waves.flat_map(|(s, c)| [c, s]));
         for (span, tension) in self.spans.iter_mut().zip(tensions) {
             span.push(time - first, *tension, &self.harmonics);
         }
+        self.harmonics.clear();
+        let waves = phases.iter().map(|phase| phase.sin_cos());
+        self.harmonics.extend(waves.flat_map(|(s, c)| [c, s]));
         self.carried.push(pressed);
     }
 

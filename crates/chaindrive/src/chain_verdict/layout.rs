@@ -87,7 +87,7 @@ fn practice(of: &str, powered: &[Powered<'_>], centres: Option<f64>) -> Vec<Chec
     checks
 }
 
-/// What of the layouts of a drive is against good practice, in words. Without a drive all sprockets carry power.
+/// Departures of layouts from good practice, in words. Without a drive all sprockets carry power.
 pub fn against_practice(layouts: &[ChainLayout], drive: Option<&Drive>) -> Vec<String> {
     let stops = || layouts.iter().flat_map(|it| &it.stops);
     let checks = match drive {

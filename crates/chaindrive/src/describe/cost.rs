@@ -76,7 +76,7 @@ pub fn foretold(
     Ok(Some(measure(assembled, run)?.whole_time()))
 }
 
-/// What is said before a run begins that will take so long \[s\].
+/// Notice before a run of a foretold time \[s\].
 pub fn foretelling(seconds: f64) -> String {
     let told = if seconds < 5400.0 {
         format!("{:.0} min", seconds / 60.0)

@@ -70,8 +70,8 @@ const SPRINGS: &str = r#"
 /// ΔT = k 2 g C/n,   g = (23e-6 − 11.5e-6) · 70
 /// ```
 ///
-/// That is the mean of all links, within what rollers climb the flanks. Those of spans pull more, for on the wheels teeth bear a part: by n/(n − z) if
-/// no link stretched there.
+/// That is the mean of all links but for rollers that climb the flanks: 0.9 % more with shorter links, 3.8 % with a travel. Spans pull more than that, for
+/// teeth bear a part on the wheels: by n/(n − z) if no link stretched there. The exact tensions are those of centres that moved, below.
 #[test]
 fn a_warm_housing_stretches_the_chain() {
     let growth = 11.5e-6 * 70.0;

@@ -1,4 +1,4 @@
-//! What hardly any machine is like is told, and presets are told nothing.
+//! Implausible inputs are told, and presets have none.
 #![expect(clippy::unwrap_used, reason = "a test may fail where it stands")]
 
 use std::cell::RefCell;

@@ -66,7 +66,7 @@ struct Contents {
     degrees_of_freedom: usize,
     /// Objections that do not keep it from running.
     warnings: Vec<String>,
-    /// What hardly any machine is like, with the limit and its source.
+    /// Implausible inputs, each with the limit and its source.
     implausible: Vec<String>,
 }
 

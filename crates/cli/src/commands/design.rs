@@ -131,7 +131,7 @@ pub(super) struct Layouts<'a> {
     chains: &'a [ChainLayout],
     /// Bodies in each other's way.
     clashes: &'a [String],
-    /// What of the layouts is against good practice, with its source.
+    /// Departures of the layouts from good practice, each with the limit and its source.
     against_practice: &'a [String],
 }
 
