@@ -61,7 +61,7 @@ fn against(limit: Limit) -> &'static str {
 fn wanted(limit: Limit) -> String {
     let input = match limit {
         Limit::StaticSafety | Limit::DynamicSafety => "chain.breaking_load, of its standard,",
-        Limit::BearingPressure => "chain.bearing_area, pin diameter times bush length,",
+        Limit::BearingPressure => "chain.type, or chain.joint.length of clearance joints,",
         Limit::RatedPower => "chain.rated_power, as its maker says,",
         _ => return String::new(),
     };
@@ -73,5 +73,31 @@ fn subject(limit: Limit) -> &'static str {
         Limit::StaticSafety | Limit::DynamicSafety => "safety factors",
         Limit::BearingPressure => "bearing pressure",
         _ => "power",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every key that is asked for is one of scenes.
+    #[test]
+    fn what_is_wanted_can_be_given() {
+        let schema = include_str!("../../chaindrive.schema.json");
+        for limit in [
+            Limit::StaticSafety,
+            Limit::BearingPressure,
+            Limit::RatedPower,
+        ] {
+            let told = wanted(limit);
+            let keys: Vec<&str> = told
+                .split([' ', ','])
+                .filter_map(|it| it.strip_prefix("chain."))
+                .collect();
+            assert!(!keys.is_empty(), "{told}");
+            for key in keys.iter().flat_map(|it| it.split('.')) {
+                assert!(schema.contains(&format!("\"{key}\": {{")), "{told}");
+            }
+        }
     }
 }

@@ -30,7 +30,7 @@ pub struct Ledger {
     pub kinetic: f64,
     /// Residual that rounding may leave \[J\].
     pub rounding: f64,
-    /// Teeth that have passed at the sprocket where most do \[–\]; not a number where that is not known.
+    /// Teeth of the slowest chain that have passed \[–\]; infinite without sprockets.
     pub teeth: f64,
 }
 
