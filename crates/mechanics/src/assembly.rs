@@ -302,10 +302,10 @@ impl Drive {
             pushes_away::check(&laid.parts)?;
             overload::check(&system, &laid.parts, (&q, &torques))?;
             free_trains::hold(&mut system, &moving, &q);
-            let settled = newton::settle(&mut system, &mut q);
+            let settled = newton::settle(&mut system, &mut q, &|| buried(&laid));
             free_trains::let_go(&mut system, &moving);
             statics = settled
-                .map_err(|error| laid_through_a_guide(&laid).unwrap_or(error))
+                .map_err(|error| laid_through_a_guide(&laid, 0.0).unwrap_or(error))
                 .map_err(|error| worn::named(error, &laid.parts, &fittings))
                 .map_err(|error| overload::named(error, &system, &laid.parts, (&q, &torques)))?;
         }
@@ -452,10 +452,17 @@ fn cuts_into_teeth(laid: &LaidDrive) -> Option<AssemblyError> {
     (!clashes.is_empty()).then_some(AssemblyError::Clash { clashes })
 }
 
-/// The error of a chain laid through a guide, which cannot settle.
-fn laid_through_a_guide(laid: &LaidDrive) -> Option<AssemblyError> {
+/// The error of a chain that is laid through a guide, more than so deep \[m\].
+fn laid_through_a_guide(laid: &LaidDrive, deeper: f64) -> Option<AssemblyError> {
     let rollers: Vec<_> = laid.chains.iter().map(|c| c.positions.clone()).collect();
     let mut clashes = clashes(&laid.parts, &BodyPositions::laid(laid), &rollers);
-    clashes.retain(|clash| matches!(clash, Clash::Chain { .. }));
+    clashes.retain(|clash| matches!(clash, Clash::Chain { depth, .. } if *depth > deeper));
     (!clashes.is_empty()).then_some(AssemblyError::Clash { clashes })
+}
+
+/// The same where it lies more than a pitch deep, from where no search downhill brings it out.
+fn buried(laid: &LaidDrive) -> Option<AssemblyError> {
+    let chains = laid.parts.chains.iter();
+    let lengths = chains.flat_map(|placed| placed.chain.lengths.iter().copied());
+    laid_through_a_guide(laid, lengths.reduce(f64::max)?)
 }

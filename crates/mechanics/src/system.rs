@@ -222,6 +222,15 @@ impl System {
         self.commit(t, q, v, &mut record);
     }
 
+    /// Lays the contact windows anew where everything rests.
+    pub(crate) fn look_around(&mut self, q: &[f64], record: &mut Record) {
+        let still = vec![0.0; q.len()];
+        let at = Moment::stateless(self.begin, q, &still);
+        for (member, record) in self.chains.iter_mut().zip(&mut record.chains) {
+            member.renew_windows(&self.bodies, at, record);
+        }
+    }
+
     /// Where the rollers of every chain are \[m\].
     pub(crate) fn roller_places(&self, at: Moment<'_>) -> Vec<Vec<Point>> {
         let mut record = self.new_record();

@@ -27,6 +27,7 @@ mod linkages;
 mod links;
 mod live;
 mod loads;
+mod long_chains;
 mod mistakes;
 mod misuse;
 mod motors;

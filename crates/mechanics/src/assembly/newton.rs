@@ -8,24 +8,23 @@
 //! with the term −F n·d of the rotating wheel, without which the iteration crawls. The ring of
 //! rollers is folded (0, N−1, 1, N−2, …) so that it becomes a band, with everything else as a border.
 
+mod balance;
 mod contact;
 mod curvature;
 mod descend;
+mod skyline;
+mod stride;
 
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
-use nalgebra::DVector;
-use nalgebra_sparse::factorization::CscCholesky;
-use nalgebra_sparse::pattern::SparsityPattern;
-use nalgebra_sparse::{CooMatrix, CscMatrix};
 
 use crate::bodies::WheelSupport;
-use crate::seam::{Balance, Load, Sum};
-use crate::system::Member;
-use crate::tensioner::Extension;
+use crate::seam::{Balance, Load};
+use crate::system::{Member, Record};
 use crate::{AssemblyError, System};
 
 pub(crate) use curvature::{Curvature, curvature};
+use skyline::Skyline;
 
 /// A static state on the way to the start.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,11 +46,21 @@ const CONVERGED: f64 = 1e-9;
 /// Residual that is accepted where rounding keeps the iteration from going further.
 const ACCEPTED: f64 = 1e-6;
 
+/// Way, in pitches, after which rollers near a body are looked for anew: a quarter of how far around it windows reach.
+const LOOK: f64 = 0.125;
+
 /// Share of gravity or load below which the path of equilibria is taken to have ended.
 const LEAST_SHARE: f64 = 1e-3;
 
 /// Brings `q` into equilibrium: pretension first, then gravity, then load.
-pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Statics>, AssemblyError> {
+///
+/// A chain that no path of equilibria leads to goes downhill, which may take long; `hopeless` says before that why it need not try.
+pub(super) fn settle(
+    system: &mut System,
+    q: &mut Vec<f64>,
+    hopeless: &dyn Fn() -> Option<AssemblyError>,
+) -> Result<Vec<Statics>, AssemblyError> {
+    let may_descend = || hopeless().map_or(Ok(()), Err);
     let unknowns = Unknowns::new(system);
     if unknowns.count == 0 {
         return Ok(Vec::new());
@@ -62,23 +71,25 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
         gravity: 0.0,
         torque: 0.0,
     };
+    let stages: [(&'static str, bool); 2] = [
+        ("gravity", system.bodies.gravity != Vector::zeros()),
+        ("load", has_load(system)),
+    ];
     let mut newton = Newton {
+        record: system.new_record(),
         system,
         unknowns: &unknowns,
-        factored: None,
+        looked: q.clone(),
     };
     // A chain that pulls as it was laid finds its place under that alone; where Newton's method does not, downhill.
     if taut {
         let mut found = newton.solve(q, at, 300);
         if found.residual >= ACCEPTED {
+            may_descend()?;
             found = newton.descend(q, at);
         }
         *q = newton.accept(found, "pretension", &mut statics)?;
     }
-    let stages: [(&'static str, bool); 2] = [
-        ("gravity", system.bodies.gravity != Vector::zeros()),
-        ("load", has_load(system)),
-    ];
     // Gravity and load come on in shares, each from the equilibrium of the one before: shares grow while that works, and
     // shrink where it does not.
     for (stage, present) in stages {
@@ -112,6 +123,7 @@ pub(super) fn settle(system: &mut System, q: &mut Vec<f64>) -> Result<Vec<Static
                         "gravity" => load.gravity = 1.0,
                         _ => load.torque = 1.0,
                     }
+                    may_descend()?;
                     let found = newton.descend(q, load);
                     *q = newton.accept(found, stage, &mut statics)?;
                     share = 1.0;
@@ -168,6 +180,8 @@ struct Unknowns {
     /// State entry → row.
     row: Vec<Option<usize>>,
     count: usize,
+    /// Rows of chains, which come first.
+    of_chains: usize,
     /// Squared lever \[m²\] that turns the row's unit into metres: 1 for rollers, R² for angles.
     scale: Vec<f64>,
 }
@@ -191,6 +205,7 @@ impl Unknowns {
                 );
             }
         }
+        let of_chains = scale.len();
         let bodies = &system.bodies;
         for wheel in &bodies.wheels {
             if let Some((dof, _)) = wheel.turn.turned_by() {
@@ -215,6 +230,7 @@ impl Unknowns {
         Self {
             row,
             count: scale.len(),
+            of_chains,
             scale,
         }
     }
@@ -230,32 +246,11 @@ struct StaticSolution {
 }
 
 struct Newton<'a> {
-    system: &'a System,
+    system: &'a mut System,
     unknowns: &'a Unknowns,
-    /// Of the last step: where contacts are the same, so are the places of what is not zero, and half the work is to find those.
-    factored: Option<Factorisation>,
-}
-
-/// A factorised matrix and the places of its entries.
-struct Factorisation {
-    pattern: SparsityPattern,
-    factor: CscCholesky<f64>,
-}
-
-impl Factorisation {
-    /// Factorises a matrix, in the places of another one where they are the same; none if it is not positive definite.
-    fn of(matrix: &CscMatrix<f64>, before: Option<Self>) -> Option<Self> {
-        match before {
-            Some(mut same) if same.pattern == *matrix.pattern() => {
-                let done = same.factor.refactor(matrix.values());
-                done.ok().map(|()| same)
-            }
-            _ => Some(Self {
-                pattern: matrix.pattern().clone(),
-                factor: CscCholesky::factor(matrix).ok()?,
-            }),
-        }
-    }
+    record: Record,
+    /// Where everything stood when the contact windows were laid.
+    looked: Vec<f64>,
 }
 
 impl Newton<'_> {
@@ -301,7 +296,7 @@ impl Newton<'_> {
             let Some(step) = self.step(&balance, &mut shift, stiffness) else {
                 break;
             };
-            let factor = (cap / self.farthest(&step)).min(1.0);
+            let factor = self.share(&q, &step, cap);
             self.go(&mut q, &step, factor);
             balance = self.balance(&q, load);
             let now = self.residual(&q, &balance);
@@ -351,14 +346,6 @@ impl Newton<'_> {
             .fold(0.0, f64::max)
     }
 
-    /// Largest displacement of anything by a step \[m\].
-    fn farthest(&self, step: &[f64]) -> f64 {
-        let scaled = step.iter().zip(&self.unknowns.scale);
-        scaled
-            .map(|(s, lever)| s.abs() * lever.sqrt())
-            .fold(0.0, f64::max)
-    }
-
     /// Moves along a share of a step.
     fn go(&self, q: &mut [f64], step: &[f64], share: f64) {
         for (entry, row) in self.unknowns.row.iter().enumerate() {
@@ -368,131 +355,32 @@ impl Newton<'_> {
         }
     }
 
-    fn residual(&self, q: &[f64], balance: &Balance) -> f64 {
-        let tension = balance.tensions.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
-        let gravity = self.system.bodies.gravity.norm();
-        // What rounding leaves in an unloaded chain is accepted.
-        let (mut mass, mut floor) = (0.0_f64, 1e-9_f64);
-        for member in &self.system.chains {
-            mass = mass.max(member.chain.weights()[1]);
-            floor = floor.max(rounding(member, q) / ACCEPTED);
+    /// Forces and stiffness at a state, with the contacts of the rollers that are near a body there.
+    fn balance(&mut self, q: &[f64], load: Load) -> Balance {
+        if self.moved(q) > LOOK * self.system.pitch() {
+            self.system.look_around(q, &mut self.record);
+            self.looked.copy_from_slice(q);
         }
-        let scale = tension.max(mass * gravity).max(floor);
-        let scaled = balance.gradient.iter().zip(&self.unknowns.scale);
-        scaled
-            .map(|(g, lever)| (g / lever.sqrt()).abs())
-            .fold(0.0, f64::max)
-            / scale
+        balance::balance(self.system, self.unknowns, q, load)
+    }
+
+    fn residual(&self, q: &[f64], balance: &Balance) -> f64 {
+        balance::residual(self.system, self.unknowns, q, balance)
     }
 
     /// −(H + λ D)⁻¹ ∇E, raising λ until the matrix is positive definite.
-    fn step(&mut self, balance: &Balance, shift: &mut f64, stiffness: f64) -> Option<Vec<f64>> {
-        let n = self.unknowns.count;
+    fn step(&self, balance: &Balance, shift: &mut f64, stiffness: f64) -> Option<Vec<f64>> {
         while *shift < 1e3 * stiffness {
-            let mut matrix = CooMatrix::new(n, n);
-            // The Hessian, and the shift in the units of each row.
-            for &(i, j, value) in &balance.entries {
-                matrix.push(i, j, value);
-            }
-            for (i, lever) in self.unknowns.scale.iter().enumerate() {
-                matrix.push(i, i, *shift * lever);
-            }
-            self.factored = Factorisation::of(&CscMatrix::from(&matrix), self.factored.take());
-            if let Some(Factorisation { factor, .. }) = &self.factored {
-                let step = factor.solve(&(-&balance.gradient));
-                return Some(step.iter().copied().collect());
+            // The shift in the units of each row.
+            let scale = self.unknowns.scale.iter();
+            let diagonal: Vec<f64> = scale.map(|lever| *shift * lever).collect();
+            if let Some(factor) = Skyline::factor(&balance.entries, &diagonal) {
+                let mut step: Vec<f64> = balance.gradient.iter().map(|slope| -slope).collect();
+                factor.solve(&mut step);
+                return Some(step);
             }
             *shift *= 10.0;
         }
         None
-    }
-
-    fn balance(&self, q: &[f64], load: Load) -> Balance {
-        let system = self.system;
-        let mut sum = Sum {
-            row: &self.unknowns.row,
-            first: 0,
-            balance: Balance {
-                gradient: DVector::zeros(self.unknowns.count),
-                entries: Vec::new(),
-                contacts: vec![0; system.bodies.wheels.len()],
-                tensions: Vec::with_capacity(system.links()),
-            },
-        };
-        for member in &system.chains {
-            sum.first = member.entries.start;
-            let own = &q[member.entries.clone()];
-            member
-                .chain
-                .add_balance(own, system.bodies.gravity, load, &mut sum);
-        }
-        sum.first = 0;
-        self.add_bodies(q, load, &mut sum);
-        contact::add_contacts(system, q, &mut sum);
-        sum.balance
-    }
-
-    fn add_bodies(&self, q: &[f64], load: Load, sum: &mut Sum<'_>) {
-        let (bodies, begin) = (&self.system.bodies, self.system.begin);
-        let still = vec![0.0; q.len()];
-        for shaft in &bodies.shafts {
-            if let Some((dof, ratio)) = shaft.turn.turned_by() {
-                let kinematics = shaft.turn.kinematics(begin, q, &still);
-                let of = |torques| {
-                    bodies.torque(torques, kinematics, Moment::stateless(begin, q, &still))
-                };
-                let torque = of(&shaft.drive) + of(&shaft.load);
-                sum.force(dof, -load.torque * (ratio * torque));
-            }
-        }
-        for wheel in &bodies.wheels {
-            if let WheelSupport::Springs { dof, stiffness, .. } = &wheel.support {
-                for axis in 0..2 {
-                    let away = q[dof + axis] - wheel.centre[axis];
-                    let weight = load.gravity * wheel.mass * bodies.gravity[axis];
-                    sum.force(dof + axis, stiffness[axis] * away - weight);
-                    sum.stiffen(dof + axis, dof + axis, stiffness[axis]);
-                }
-            }
-        }
-        for coupling in &bodies.couplings {
-            let [twist, _] = bodies.twist(coupling, Moment::stateless(begin, q, &still));
-            for (entry, share) in bodies.twisted_by(coupling) {
-                sum.force(entry, coupling.stiffness * twist * share);
-                for (other, other_share) in bodies.twisted_by(coupling) {
-                    sum.stiffen(entry, other, coupling.stiffness * share * other_share);
-                }
-            }
-        }
-        for slide in &bodies.slides {
-            let Some(dof) = slide.dof else { continue };
-            let s = q[dof];
-            let Extension { length, lever } = slide.carrier.extension(s);
-            let push = slide.push.relaxed();
-            let force = push.force(length, 0.0, 0.0).elastic;
-            let h = 1e-6;
-            // The lever of a plunger changes slowly with the angle of its arm.
-            let [behind, ahead] = [s - h, s + h].map(|s| slide.carrier.extension(s).lever);
-            let bend = (ahead - behind) / (2.0 * h);
-            sum.force(dof, -force * lever);
-            sum.stiffen(
-                dof,
-                dof,
-                push.stiffness(length) * lever * lever - force * bend,
-            );
-            let pose = slide.pose(q, &still);
-            for (mass, at_rest) in slide.weights() {
-                let weight = bodies.gravity * (mass * load.gravity);
-                let (place, _) = slide.carry(pose, at_rest);
-                let Some(way) = slide.way(pose, place) else {
-                    continue;
-                };
-                sum.force(dof, -way.first.dot(&weight));
-                if way.bends() {
-                    // ∂²(−m g·x)/∂s² = −m g·∂²x/∂s²
-                    sum.stiffen(dof, dof, -weight.dot(&way.second));
-                }
-            }
-        }
     }
 }

@@ -1,5 +1,6 @@
 //! The contacts of one chain with the bodies that it can touch.
 
+use chaindrive_geometry::Point;
 use chaindrive_integrate::Moment;
 
 use super::{Anchor, Bodies};
@@ -199,6 +200,26 @@ impl BodyContacts {
             RailContact::Plates(_) => None,
         });
         self.teeth.iter().map(|on| &on.contacts).chain(rails)
+    }
+
+    /// Hands `visit` for every body how far \[m\] a roller or pin at a place is at least from touching it.
+    pub(crate) fn each_room(
+        &self,
+        bodies: &Bodies,
+        at: Moment<'_>,
+        mut visit: impl FnMut(&dyn Fn(Point) -> f64),
+    ) {
+        for on in &self.teeth {
+            let frame = bodies.wheel_frame(on.wheel, &on.anchor, at);
+            visit(&|place| on.contacts.room(&frame, place));
+        }
+        for on in &self.rails {
+            let frame = bodies.rail_frame(on.rail, at);
+            match &on.contact {
+                RailContact::Circles(contacts) => visit(&|place| contacts.room(&frame, place)),
+                RailContact::Plates(plates) => visit(&|place| plates.room(&frame, place)),
+            }
+        }
     }
 
     /// Says whether the faces that rollers press on are to be written down.

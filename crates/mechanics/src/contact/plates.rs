@@ -172,7 +172,7 @@ impl PlateContact {
         let mut near = std::mem::take(&mut self.near);
         let far = |roller: usize| {
             let pin = Point::new(places.x[roller], places.y[roller]);
-            self.beyond(frame.local(pin, self.reference), margin)
+            self.room(frame, pin) > margin
         };
         let reached = |link: usize| !(far(link) && far((link + 1) % places.count));
         near.clear();
@@ -185,15 +185,23 @@ impl PlateContact {
     }
 
     fn far(&self, p: Point) -> bool {
-        self.beyond(p, 0.0)
+        self.beyond(p) > 0.0
     }
 
-    /// Whether a place in the face's coordinates is farther from its box than a plate reaches, by a margin \[m\].
-    fn beyond(&self, p: Point, margin: f64) -> bool {
-        let reach = REACH * self.half_height + margin;
-        (0..2).any(|axis| {
-            p[axis] < self.bounds[0][axis] - reach || p[axis] > self.bounds[1][axis] + reach
-        })
+    /// How far \[m\] a pin at a place is at least from where its plates may touch; nothing or less there.
+    pub(crate) fn room(&self, frame: &Frame, place: Point) -> f64 {
+        self.beyond(frame.local(place, self.reference))
+    }
+
+    /// How much farther \[m\] a place in the face's coordinates is from its box than a plate reaches.
+    fn beyond(&self, p: Point) -> f64 {
+        let beside = |axis: usize| {
+            f64::max(
+                self.bounds[0][axis] - p[axis],
+                p[axis] - self.bounds[1][axis],
+            )
+        };
+        beside(0).max(beside(1)) - REACH * self.half_height
     }
 
     /// Pushes the pins and returns what the rail receives.

@@ -89,34 +89,37 @@ impl Contacts {
         &self.runs
     }
 
-    /// Rollers that are near, and follow each other.
-    fn near_runs(
-        &self,
-        frame: &Frame,
-        places: Places<'_>,
-        margin: f64,
-    ) -> impl Iterator<Item = Run> {
-        let [c, s] = frame.turn;
-        let centre = frame.centre();
-        let near = move |roller: usize| {
-            let (x, y) = (places.x[roller], places.y[roller]);
-            let (dx, dy) = (x - centre.x, y - centre.y);
-            match &self.shape {
-                Shape::Teeth(teeth) => {
-                    let reach = teeth.tip_radius + self.largest + margin;
-                    dx * dx + dy * dy < reach * reach
-                }
-                Shape::Rail {
-                    reference, bounds, ..
-                } => {
-                    let reach = self.largest + margin;
-                    let local = [c * dx + s * dy + reference.x, c * dy - s * dx + reference.y];
-                    (0..2).all(|axis| {
-                        local[axis] > bounds[0][axis] - reach
-                            && local[axis] < bounds[1][axis] + reach
-                    })
-                }
+    /// How far \[m\] a roller at a place is at least from touching; nothing or less where it may touch.
+    pub(crate) fn room(&self, frame: &Frame, place: Point) -> f64 {
+        let d = place - frame.centre();
+        match &self.shape {
+            Shape::Teeth(teeth) => d.norm() - teeth.tip_radius - self.largest,
+            Shape::Rail {
+                reference, bounds, ..
+            } => {
+                let [c, s] = frame.turn;
+                let local = [
+                    c * d.x + s * d.y + reference.x,
+                    c * d.y - s * d.x + reference.y,
+                ];
+                let outside = |axis: usize| {
+                    f64::max(bounds[0][axis] - local[axis], local[axis] - bounds[1][axis])
+                };
+                outside(0).max(outside(1)) - self.largest
             }
+        }
+    }
+
+    /// Rollers that are near, and follow each other.
+    fn near_runs<'a>(
+        &'a self,
+        frame: &'a Frame,
+        places: Places<'a>,
+        margin: f64,
+    ) -> impl Iterator<Item = Run> + 'a {
+        let near = move |roller: usize| {
+            let place = Point::new(places.x[roller], places.y[roller]);
+            self.room(frame, place) < margin
         };
         let mut rest = 0..places.count;
         std::iter::from_fn(move || {

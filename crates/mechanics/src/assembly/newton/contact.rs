@@ -3,12 +3,11 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
-use super::Sum;
 use crate::System;
 use crate::bodies::{Bodies, RailContact, RailSupport, Wheel, WheelSupport};
 use crate::contact::{Contacts, Frame, PlateContact};
 use crate::profile::Probe;
-use crate::seam::{Moving, Way};
+use crate::seam::{Moving, Sum, Way};
 use crate::system::Member;
 
 /// State entries that place a body: its angle, and what moves its centre.

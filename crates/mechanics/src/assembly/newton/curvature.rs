@@ -3,7 +3,7 @@
 use chaindrive_geometry::Vector;
 use nalgebra::{DMatrix, DVector};
 
-use super::{Newton, Unknowns};
+use super::{Unknowns, balance};
 use crate::System;
 use crate::seam::{Load, Moving};
 
@@ -27,12 +27,7 @@ pub(crate) struct Curvature {
 /// ```
 pub(crate) fn curvature(system: &System, q: &[f64]) -> Curvature {
     let unknowns = Unknowns::new(system);
-    let newton = Newton {
-        system,
-        unknowns: &unknowns,
-        factored: None,
-    };
-    let mut balance = newton.balance(q, Load::FULL);
+    let mut balance = balance::balance(system, &unknowns, q, Load::FULL);
     let count = unknowns.count;
     let mut hessian = DMatrix::zeros(count, count);
     for &(i, j, value) in &balance.entries {
@@ -79,7 +74,7 @@ pub(crate) fn curvature(system: &System, q: &[f64]) -> Curvature {
         entries,
         hessian,
         conditions,
-        residual: newton.residual(q, &balance),
+        residual: balance::residual(system, &unknowns, q, &balance),
     }
 }
 

@@ -41,7 +41,7 @@ impl Newton<'_> {
             let Some(mut step) = self.step(&balance, &mut shift, stiffness) else {
                 break;
             };
-            let factor = (cap / self.farthest(&step)).min(1.0);
+            let factor = self.share(&q, &step, cap);
             for s in &mut step {
                 *s *= factor;
             }

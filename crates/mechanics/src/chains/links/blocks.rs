@@ -109,12 +109,6 @@ impl BorderedBlocks {
 
 #[cfg(test)]
 mod tests {
-    use std::hint::black_box;
-    use std::time::Instant;
-
-    use nalgebra_sparse::factorization::CscCholesky;
-    use nalgebra_sparse::{CooMatrix, CscMatrix};
-
     use super::*;
 
     /// Against a dense solution and product of the same matrix, with and without a border.
@@ -172,83 +166,6 @@ mod tests {
             for j in 0..border {
                 assert!((blocks.right_border[j] - exact[3 * links + j]).abs() < 1e-13);
             }
-        }
-    }
-
-    /// Microseconds of one solution, by blocks and by a sparse factorisation that keeps its pattern, from filling to answer.
-    #[test]
-    #[ignore = "a measurement: cargo test -p chaindrive-mechanics --lib blocks_and_sparse -- --ignored --nocapture"]
-    fn blocks_and_sparse_factors_take_their_time() {
-        // Rows of links, and a last link with so many wheels: bicycle, marine engine, and a long chain.
-        for (links, border) in [(103, 4), (121, 6), (171, 7)] {
-            let size = 3 * links + border;
-            let block = Matrix3::new(8.0, 0.3, 0.2, 0.3, 7.0, 0.1, 0.2, 0.1, 9.0);
-            let below = Matrix3::new(-0.5, 0.1, 0.3, 0.2, -0.4, 0.1, 0.3, -0.2, -0.6);
-            let beside = Vector3::new(0.02, -0.03, 0.01);
-            let mut all = CooMatrix::new(size, size);
-            let mut both = |i: usize, j: usize, value: f64| {
-                all.push(i, j, value);
-                if i != j {
-                    all.push(j, i, value);
-                }
-            };
-            for i in 0..links {
-                for k in 0..3 {
-                    (0..=k).for_each(|l| both(3 * i + k, 3 * i + l, block[(k, l)]));
-                    if i + 1 < links {
-                        (0..3).for_each(|l| both(3 * i + 3 + k, 3 * i + l, below[(k, l)]));
-                    }
-                    (0..border).for_each(|j| both(3 * links + j, 3 * i + k, beside[k]));
-                }
-            }
-            for j in 0..border {
-                (0..=j).for_each(|k| {
-                    both(3 * links + j, 3 * links + k, if j == k { 9.0 } else { 0.1 });
-                });
-            }
-            let matrix = CscMatrix::from(&all);
-            let mut factor = CscCholesky::factor(&matrix).expect("positive definite");
-            let mut values = matrix.values().to_vec();
-            let mut x = DMatrix::from_element(size, 1, 1.0);
-            let mut blocks = BorderedBlocks::default();
-            let mut by_blocks = || {
-                blocks.clear(links, border);
-                blocks.diagonal.fill(block);
-                blocks.below.fill(below);
-                blocks.beside.fill(beside);
-                blocks.right.fill(Vector3::repeat(1.0));
-                blocks.right_border.fill(1.0);
-                for j in 0..border {
-                    (0..=j).for_each(|k| blocks.corner[(j, k)] = if j == k { 9.0 } else { 0.1 });
-                }
-                assert!(blocks.solve());
-                blocks.right[0][0]
-            };
-            let mut by_sparse = || {
-                values.copy_from_slice(matrix.values());
-                factor.refactor(&values).expect("positive definite");
-                x.fill(1.0);
-                factor.solve_mut(&mut x);
-                x[0]
-            };
-            assert!((by_blocks() - by_sparse()).abs() < 1e-12);
-            let time = |solve: &mut dyn FnMut() -> f64| {
-                let start = Instant::now();
-                (0..300).for_each(|_| {
-                    black_box(solve());
-                });
-                start.elapsed().as_secs_f64() / 300.0 * 1e6
-            };
-            // Side by side, since other work comes and goes.
-            let mut pairs: Vec<[f64; 2]> = (0..7)
-                .map(|_| [time(&mut by_blocks), time(&mut by_sparse)])
-                .collect();
-            pairs.sort_by(|a, b| (a[1] / a[0]).total_cmp(&(b[1] / b[0])));
-            let [blocks, sparse] = pairs[3];
-            println!(
-                "{links} links, border {border}: blocks {blocks:.1} us, sparse {sparse:.1} us"
-            );
-            assert!(blocks < sparse);
         }
     }
 }
