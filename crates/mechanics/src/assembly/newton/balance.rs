@@ -16,7 +16,8 @@ pub(super) fn balance(system: &System, unknowns: &Unknowns, q: &[f64], load: Loa
         first: 0,
         balance: Balance {
             gradient: DVector::zeros(unknowns.count),
-            entries: Vec::new(),
+            // A link of two free rollers has sixteen, four for every unknown, and twice that with its neighbour.
+            entries: Vec::with_capacity(10 * unknowns.count),
             contacts: vec![0; system.bodies.wheels.len()],
             tensions: Vec::with_capacity(system.links()),
         },
