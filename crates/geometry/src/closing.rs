@@ -19,6 +19,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use crate::route::WheelKind;
 use crate::{GeometryError, Point, Route, Wheel};
 
+mod known;
 mod misfit;
 mod nearest;
 mod search;
@@ -74,6 +75,12 @@ impl Closing {
     /// # Errors
     /// Those of [`Route::taut`]; a pitch or phase out of range; no way of seating the chain.
     pub fn march(wheels: &[Wheel], pitch: f64, phase: f64) -> Result<Self, GeometryError> {
+        known::known(wheels, pitch, phase, || {
+            Self::march_anew(wheels, pitch, phase)
+        })
+    }
+
+    fn march_anew(wheels: &[Wheel], pitch: f64, phase: f64) -> Result<Self, GeometryError> {
         check_pitch(wheels, pitch)?;
         GeometryError::finite("tooth phase", phase)?;
         let route = Route::taut(wheels)?;

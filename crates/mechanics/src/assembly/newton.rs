@@ -180,8 +180,10 @@ struct Unknowns {
     /// State entry → row.
     row: Vec<Option<usize>>,
     count: usize,
-    /// Rows of chains, which come first.
-    of_chains: usize,
+    /// Where the rows of turning shafts begin, after those of chains.
+    turns: usize,
+    /// Where the rows of centres and tensioners begin, the last ones.
+    places: usize,
     /// Squared lever \[m²\] that turns the row's unit into metres: 1 for rollers, R² for angles.
     scale: Vec<f64>,
 }
@@ -205,21 +207,24 @@ impl Unknowns {
                 );
             }
         }
-        let of_chains = scale.len();
+        let turns = scale.len();
         let bodies = &system.bodies;
         for wheel in &bodies.wheels {
             if let Some((dof, _)) = wheel.turn.turned_by() {
                 let lever = bodies.shafts[wheel.shaft].lever;
                 add(dof, lever * lever, &mut scale);
             }
-            if let WheelSupport::Springs { dof, .. } = wheel.support {
-                add(dof, 1.0, &mut scale);
-                add(dof + 1, 1.0, &mut scale);
-            }
         }
         for shaft in &bodies.shafts {
             if let Some(dof) = shaft.led() {
                 add(dof, shaft.lever * shaft.lever, &mut scale);
+            }
+        }
+        let places = scale.len();
+        for wheel in &bodies.wheels {
+            if let WheelSupport::Springs { dof, .. } = wheel.support {
+                add(dof, 1.0, &mut scale);
+                add(dof + 1, 1.0, &mut scale);
             }
         }
         for slide in &bodies.slides {
@@ -230,7 +235,8 @@ impl Unknowns {
         Self {
             row,
             count: scale.len(),
-            of_chains,
+            turns,
+            places,
             scale,
         }
     }
@@ -284,7 +290,6 @@ impl Newton<'_> {
     /// radius r_i − d₁/2, and a step along one first climbs and then falls back.
     fn solve(&mut self, start: &[f64], load: Load, most: usize) -> StaticSolution {
         let stiffness = self.stiffest();
-        let cap = self.longest();
         let mut q = start.to_vec();
         let mut shift = 1e-7 * stiffness;
         let mut balance = self.balance(&q, load);
@@ -296,7 +301,7 @@ impl Newton<'_> {
             let Some(step) = self.step(&balance, &mut shift, stiffness) else {
                 break;
             };
-            let factor = self.share(&q, &step, cap);
+            let factor = self.share(&q, &step, 1.0);
             self.go(&mut q, &step, factor);
             balance = self.balance(&q, load);
             let now = self.residual(&q, &balance);
@@ -320,22 +325,17 @@ impl Newton<'_> {
                 break;
             }
         }
-        let (residual, q) = best;
-        let balance = self.balance(&q, load);
+        let (residual, best) = best;
+        if best != q {
+            balance = self.balance(&best, load);
+        }
         StaticSolution {
-            q,
+            q: best,
             iterations,
             residual,
             tensions: balance.tensions,
             contacts: balance.contacts,
         }
-    }
-
-    /// Longest step of a roller \[m\]: a fifth of the radius that touches the teeth.
-    fn longest(&self) -> f64 {
-        let teeth = self.system.chains.iter().flat_map(|m| &m.contacts.teeth);
-        let smallest = teeth.map(|on| on.contacts.radius).reduce(f64::min);
-        0.2 * smallest.unwrap_or_else(|| self.system.pitch())
     }
 
     /// Stiffness of the stiffest link \[N/m\].
@@ -344,15 +344,6 @@ impl Newton<'_> {
         chains
             .map(|member| member.chain.stiffest_spring())
             .fold(0.0, f64::max)
-    }
-
-    /// Moves along a share of a step.
-    fn go(&self, q: &mut [f64], step: &[f64], share: f64) {
-        for (entry, row) in self.unknowns.row.iter().enumerate() {
-            if let Some(row) = row {
-                q[entry] += share * step[*row];
-            }
-        }
     }
 
     /// Forces and stiffness at a state, with the contacts of the rollers that are near a body there.

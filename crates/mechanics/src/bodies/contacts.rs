@@ -202,22 +202,24 @@ impl BodyContacts {
         self.teeth.iter().map(|on| &on.contacts).chain(rails)
     }
 
-    /// Hands `visit` for every body how far \[m\] a roller or pin at a place is at least from touching it.
+    /// Hands `visit` for every body, with its index if it is a sprocket, how far \[m\] a roller or pin at a place is at least from touching it.
     pub(crate) fn each_room(
         &self,
         bodies: &Bodies,
         at: Moment<'_>,
-        mut visit: impl FnMut(&dyn Fn(Point) -> f64),
+        mut visit: impl FnMut(Option<usize>, &dyn Fn(Point) -> f64),
     ) {
         for on in &self.teeth {
             let frame = bodies.wheel_frame(on.wheel, &on.anchor, at);
-            visit(&|place| on.contacts.room(&frame, place));
+            visit(Some(on.wheel), &|place| on.contacts.room(&frame, place));
         }
         for on in &self.rails {
             let frame = bodies.rail_frame(on.rail, at);
             match &on.contact {
-                RailContact::Circles(contacts) => visit(&|place| contacts.room(&frame, place)),
-                RailContact::Plates(plates) => visit(&|place| plates.room(&frame, place)),
+                RailContact::Circles(contacts) => {
+                    visit(None, &|place| contacts.room(&frame, place));
+                }
+                RailContact::Plates(plates) => visit(None, &|place| plates.room(&frame, place)),
             }
         }
     }

@@ -12,10 +12,10 @@ use crate::system::Member;
 
 /// State entries that place a body: its angle, and what moves its centre.
 #[derive(Clone, Default)]
-struct Mount {
+pub(super) struct Mount {
     /// The entry, and how far the body turns with it.
-    angle: Option<(usize, f64)>,
-    centre: Vec<Way>,
+    pub(super) angle: Option<(usize, f64)>,
+    pub(super) centre: Vec<Way>,
 }
 
 /// Adds the energies of all closed contacts.
@@ -43,7 +43,7 @@ pub(super) fn add_contacts(system: &System, q: &[f64], sum: &mut Sum<'_>) {
     }
 }
 
-fn wheel_mount(bodies: &Bodies, wheel: &Wheel, at: Moment<'_>) -> (Frame, Mount) {
+pub(super) fn wheel_mount(bodies: &Bodies, wheel: &Wheel, at: Moment<'_>) -> (Frame, Mount) {
     let kinematics = wheel.kinematics(at.t, at.q, at.v);
     let (origin, _, _) = wheel.centre_kinematics(at.t, at.q, at.v, &bodies.slides);
     let turn = [kinematics.position.cos(), kinematics.position.sin()];

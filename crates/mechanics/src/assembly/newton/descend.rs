@@ -7,8 +7,8 @@
 use super::{CONVERGED, Newton, StaticSolution};
 use crate::seam::Load;
 
-/// Longest step, as a share of the radius of a roller: well within the curvature of a seat.
-const CAP: f64 = 3e-3;
+/// Longest step, as a part of that of Newton's method: well within the curvature of a seat.
+const PART: f64 = 0.015;
 
 /// Iterations before the search is given up; worn chains of 120 links took up to 4500, about a second.
 const MOST: usize = 20_000;
@@ -20,7 +20,7 @@ impl Newton<'_> {
     /// Moves downhill from `start` into a minimum of the energy at one load.
     ///
     /// ```text
-    /// (H + λ D) s = −∇E,   accepted while ΔE ≈ ½ (∇E + ∇E⁺)·s < 0
+    /// (H + λ D) s = −∇E,   accepted while ΔE ≈ ½ (∇E + ∇E⁺)·(q⁺ − q) < 0
     /// ```
     ///
     /// λ falls with every step accepted and rises with every other: from steepest descent with short steps
@@ -31,28 +31,24 @@ impl Newton<'_> {
     /// trust region).
     pub(super) fn descend(&mut self, start: &[f64], load: Load) -> StaticSolution {
         let stiffness = self.stiffest();
-        let cap = CAP / 0.2 * self.longest();
         let mut shift = 1e-4 * stiffness;
         let mut q = start.to_vec();
         let mut balance = self.balance(&q, load);
         let mut iterations = 0;
         while iterations < MOST && self.residual(&q, &balance) > CONVERGED {
             iterations += 1;
-            let Some(mut step) = self.step(&balance, &mut shift, stiffness) else {
+            let Some(step) = self.step(&balance, &mut shift, stiffness) else {
                 break;
             };
-            let factor = self.share(&q, &step, cap);
-            for s in &mut step {
-                *s *= factor;
-            }
             let mut tried = q.clone();
-            self.go(&mut tried, &step, 1.0);
+            let share = self.share(&q, &step, PART);
+            self.go(&mut tried, &step, share);
             let next = self.balance(&tried, load);
-            // ΔE ≈ ½ (∇E + ∇E⁺)·s
-            let change: f64 = step
-                .iter()
-                .zip(balance.gradient.iter().zip(&next.gradient))
-                .map(|(s, (before, after))| 0.5 * s * (before + after))
+            // ΔE ≈ ½ (∇E + ∇E⁺)·(q⁺ − q)
+            let rows = self.unknowns.row.iter().zip(q.iter().zip(&tried));
+            let change: f64 = rows
+                .filter_map(|(row, (before, after))| Some(((*row)?, after - before)))
+                .map(|(row, moved)| 0.5 * moved * (balance.gradient[row] + next.gradient[row]))
                 .sum();
             if change < 0.0 {
                 (q, balance) = (tried, next);

@@ -1,0 +1,63 @@
+//! Closings that were found before, to the bit.
+//!
+//! A search for a strain or a travel marches some hundred times around the wheels, and the next variant of a drive, with another load
+//! or pretension, marches the same ways. A closing depends on nothing but its wheels, pitch and phase, so the answer of before is the
+//! answer.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+use super::Closing;
+use crate::route::{Side, WheelKind};
+use crate::{GeometryError, Wheel};
+
+/// Closings that a thread keeps; then it begins anew. One drive asks for some four hundred; each takes some two hundred bytes.
+const MOST: usize = 4096;
+
+thread_local! {
+    static KNOWN: RefCell<HashMap<Box<[u64]>, Closing>> = RefCell::new(HashMap::new());
+}
+
+/// What this thread has found before for exactly these wheels, pitch and phase, or else what `find` finds.
+pub(super) fn known(
+    wheels: &[Wheel],
+    pitch: f64,
+    phase: f64,
+    find: impl FnOnce() -> Result<Closing, GeometryError>,
+) -> Result<Closing, GeometryError> {
+    let question = question(wheels, pitch, phase);
+    let before = KNOWN.with_borrow(|known| known.get(&question).cloned());
+    if let Some(closing) = before {
+        return Ok(closing);
+    }
+    let closing = find()?;
+    KNOWN.with_borrow_mut(|known| {
+        if known.len() >= MOST {
+            known.clear();
+        }
+        known.insert(question, closing.clone());
+    });
+    Ok(closing)
+}
+
+/// All bits that a closing depends on: 0 and −0 are two questions.
+fn question(wheels: &[Wheel], pitch: f64, phase: f64) -> Box<[u64]> {
+    let mut bits = Vec::with_capacity(2 + 4 * wheels.len());
+    bits.extend([pitch.to_bits(), phase.to_bits()]);
+    for Wheel {
+        centre,
+        radius,
+        side,
+        kind,
+    } in wheels
+    {
+        let teeth = match kind {
+            WheelKind::Toothed { teeth } => u64::from(*teeth) << 1,
+            WheelKind::Smooth => 0,
+        };
+        let left = u64::from(matches!(side, Side::Left));
+        bits.extend([centre.x, centre.y, *radius].map(f64::to_bits));
+        bits.push(teeth | left);
+    }
+    bits.into_boxed_slice()
+}
