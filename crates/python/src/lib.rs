@@ -69,8 +69,8 @@ mod core {
     use crate::replay::{replay, replay_selection};
     #[pymodule_export]
     use crate::run::{
-        adaptive_methods, cell, channels, inspect, is_being_written, methods, plain, resume,
-        simulate, take_over,
+        adaptive_methods, cell, channels, inspect, is_being_written, methods, one_line, plain,
+        plain_json, resume, simulate, take_over,
     };
 
     #[pymodule_export]
