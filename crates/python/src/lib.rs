@@ -117,7 +117,7 @@ mod core {
     fn _panic(py: Python<'_>, elsewhere: bool) -> PyResult<()> {
         let fail = || -> () { panic!("as asked for") };
         if elsewhere {
-            return crate::signals::patiently(py, fail);
+            return crate::signals::patiently(py, "this is going to fail", fail);
         }
         fail();
         Ok(())
