@@ -6,8 +6,8 @@ machine: in the first 4 ms Ctrl-C ends the process without a word, and then with
 Python's own, for nothing of this package has run yet. Nothing was begun in either case.
 """
 
-# Ctrl-C is heard before the core is imported. What is imported before that is in every Python when it
-# starts: `signal` takes milliseconds.
+# Ctrl-C is heard before the core is imported. What is imported before that is in every Python when
+# it starts: `signal` takes milliseconds.
 import _signal  # type: ignore[import-not-found]
 import os
 import sys

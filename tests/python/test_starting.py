@@ -62,8 +62,8 @@ def test_the_command_imports_the_core_only(argument: str) -> None:
     assert not imported(code) & (SLOW | {"numpy"})
 
 
-# Sends Ctrl-C before the n-th line that Python runs after the command has begun to hear it; tells how
-# many lines there were.
+# Sends Ctrl-C before the n-th line that Python runs after the command has begun to hear it, and
+# tells how many lines there were.
 INTERRUPTED_AT = """
 import signal, sys
 number = int(sys.argv.pop(1))
