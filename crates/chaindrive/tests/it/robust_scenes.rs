@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use chaindrive::scene::{Scene, SceneError};
 
-/// Longest that anybody waits for a message, on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(3);
+/// Longest that anybody waits for a message, on a machine that has seven other things to do.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 fn ring() -> Scene {
     Scene::preset("spinning_ring").unwrap()
