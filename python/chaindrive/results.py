@@ -135,19 +135,43 @@ def _open(name: Place) -> xr.Dataset:
     except Exception as error:
         # Whatever Zarr and xarray make of a store that contradicts itself.
         raise ValueError(f"{name}: this result is damaged: {error!r}") from error
-    stored.attrs = {name: _told(name, value) for name, value in stored.attrs.items()}
-    return stored
+    for array in stored.variables.values():
+        array.attrs = _told(array.attrs)
+    stored.attrs = _told(stored.attrs)
+    return stored.assign_coords(_labels(stored))
 
 
-# Texts that are read again, by programs.
-_AS_WRITTEN = {"scene", "resolved_scene", "page"}
+def _told(attributes: dict[str, Any]) -> dict[str, Any]:
+    """Return attributes as a terminal may have them, whoever wrote them."""
+    return {
+        name: _text(name, value) if isinstance(value, str) else value
+        for name, value in attributes.items()
+    }
 
 
-def _told(name: str, value: Any) -> Any:
-    """Return an attribute as a terminal may have it, whoever wrote it."""
-    if not isinstance(value, str) or name in _AS_WRITTEN or value[:1] in ("{", "["):
-        return value
-    return _core.plain(value)
+# Attributes that stand in a line of ours.
+_NAMES = {"title", "scene_name", "units", "long_name"}
+
+
+def _text(name: str, value: str) -> str:
+    if name in _NAMES:
+        return _core.one_line(value)
+    if value[:1] in ("{", "["):
+        return _core.plain_json(value)
+    # A scene may have lines as Windows ends them.
+    return "\r\n".join(_core.plain(line) for line in value.split("\r\n"))
+
+
+def _labels(stored: xr.Dataset) -> dict[str, Any]:
+    """Return the coordinates whose labels a terminal may not have, with these spelled."""
+    found = {}
+    for name, values in stored.coords.items():
+        if values.dtype.kind in "OTU" and values.ndim == 1:
+            labels = [str(label) for label in values.to_numpy()]
+            told = [_core.one_line(label) for label in labels]
+            if told != labels:
+                found[str(name)] = (values.dims, told, values.attrs)
+    return found
 
 
 def take_over(path: str | PathLike[str]) -> None:

@@ -25,6 +25,7 @@ def test_every_extra_is_one_that_the_wheel_has() -> None:
 # Package, extra, and what needs it.
 NEEDS = [
     ("matplotlib", "plot", "cd.plot.layout(ring)"),
+    ("matplotlib", "plot", "cd.plot.rainflow(cd.simulate(ring, until=1e-3))"),
     ("zarr", "zarr", "cd.simulate(ring, output='ring.zarr')"),
     ("zarr", "zarr", "cd.open_result('ring.zarr')"),
     ("tqdm", "progress", "cd.simulate(ring, progress=True)"),

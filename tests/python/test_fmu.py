@@ -1,12 +1,15 @@
 """Functional mock-up units, as two importers load them: the C interface is called through fmpy."""
 
 import ctypes
+import os
 import re
+import shutil
 import subprocess
 import sys
 import threading
 from dataclasses import dataclass, field
 from pathlib import Path
+from time import monotonic, sleep
 
 import fmpy
 import numpy as np
@@ -408,6 +411,48 @@ def test_wrong_calls_are_refused_with_a_message(unpacked, capfd):
         unit.slave.getInt32([0])
     assert "no variables of this type" in capfd.readouterr()[0]
     unit.free()
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_a_step_without_end_is_given_up_when_the_unit_is_terminated(unpacked, fmi, capfd):
+    unit = Unit(unpacked(cd.scenes.marine_two_sprockets(), fmi)).start()
+    begun, refused = threading.Event(), []
+
+    def step():
+        begun.set()
+        try:
+            unit.step(0.0, 1e4)
+        except fmpy.fmi1.FMICallException as error:
+            refused.append(error)
+
+    thread = threading.Thread(target=step, daemon=True)
+    thread.start()
+    begun.wait()
+    sleep(0.2)
+    asked = monotonic()
+    unit.slave.terminate()
+    thread.join(10.0)
+    assert monotonic() - asked < 5.0
+    assert refused
+    assert "given up" in capfd.readouterr()[0]
+    unit.slave.freeInstance()
+
+
+@pytest.mark.parametrize("endless", ["/dev/zero", "pipe"])
+def test_a_scene_of_a_unit_that_never_ends_is_refused(unpacked, tmp_path, endless, capfd):
+    folder = tmp_path / "unit"
+    shutil.copytree(unpacked(cd.scenes.marine_two_sprockets(), 3), folder)
+    scene = folder / "resources" / "scene.toml"
+    scene.unlink()
+    if endless == "pipe":
+        os.mkfifo(scene)
+    else:
+        scene.symlink_to(endless)
+    asked = monotonic()
+    with pytest.raises(Exception, match="instantiate"):
+        Unit(folder)
+    assert monotonic() - asked < 5.0
+    assert "scene.toml: this is no file" in capfd.readouterr()[0]
 
 
 def test_what_cannot_be_written_is_refused(tmp_path):

@@ -78,6 +78,14 @@ def test_what_cannot_be_replaced_is_refused(run, name, tmp_path):
 
 
 @every_maker
+def test_a_name_that_no_file_system_takes_is_refused(run, name, tmp_path):
+    stem, _, ending = name.rpartition(".")
+    with pytest.raises(WriteError, match="too long"):
+        MAKERS[name](run, tmp_path / f"{300 * stem}.{ending}")
+    only(tmp_path)
+
+
+@every_maker
 def test_missing_folders_are_made_and_old_files_replaced(run, name, tmp_path):
     place = tmp_path / "a" / "b" / name
     MAKERS[name](run, place)

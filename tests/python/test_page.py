@@ -163,6 +163,11 @@ def test_the_verdict_is_seen_in_a_notebook(monkeypatch: pytest.MonkeyPatch) -> N
     run = cd.simulate(cd.scenes.spinning_ring(), until=2e-3, error=False)
     assert "Verdict: caution" in formatter.shown(run)
     assert "Verdict" not in formatter.shown(xr.Dataset())
+    # Defect: a `JSONDecodeError` of a notebook that shows a store with a damaged page.
+    damaged = run.assign_attrs(page="{")
+    assert "Verdict" not in formatter.shown(damaged)
+    with pytest.raises(ValueError, match="the page of this run is damaged"):
+        damaged.drive.summary()
 
 
 def test_a_report_is_one_file_that_asks_for_nothing(tmp_path: Path) -> None:

@@ -3,6 +3,8 @@
 import logging
 import math
 import signal
+import subprocess
+import sys
 import time
 import warnings
 
@@ -391,6 +393,39 @@ def test_the_log_is_told_what_a_long_run_does():
     assert level == "WARNING"
     assert "the run is under way" in message
     assert after < 4, "two seconds, on a machine that does other things as well"
+
+
+# Defect: half a minute without a word. The chain is 6 mm too long, and nothing says where it hangs.
+SLACK_WITHOUT_GRAVITY = """
+import logging, os, signal
+import chaindrive as cd
+class Impatient(logging.Handler):
+    def emit(self, record):
+        print(record.getMessage())
+        signal.raise_signal(signal.SIGINT)
+logging.getLogger("chaindrive").addHandler(Impatient())
+drive = cd.Drive.from_dict({
+    "gravity": [0, 0],
+    "chain": {"type": "16B-1", "links": 60},
+    "sprockets": [
+        {"name": "driver", "centre": [0, 0], "teeth": 20,
+         "motion": {"kind": "constant", "speed": "300 rpm"}},
+        {"name": "driven", "centre": ["505 mm", 0], "teeth": 20, "inertia": "0.05 kg m^2",
+         "load": [{"kind": "constant", "torque": "-20 N m"}]},
+    ],
+})
+try:
+    drive.describe()
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+    os._exit(0)
+"""
+
+
+def test_the_log_is_told_that_a_drive_settles():
+    command = [sys.executable, "-c", SLACK_WITHOUT_GRAVITY]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60)
+    assert done.stdout == "the drive is assembled and settled\ninterrupted\n"
 
 
 def test_an_interrupted_run_keeps_what_there_is():

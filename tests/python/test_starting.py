@@ -62,29 +62,58 @@ def test_the_command_imports_the_core_only(argument: str) -> None:
     assert not imported(code) & (SLOW | {"numpy"})
 
 
-# Sends Ctrl-C at the n-th import after the first line of the command.
+# Sends Ctrl-C before the n-th line that Python runs after the command has begun to hear it, and
+# tells how many lines there were.
 INTERRUPTED_AT = """
 import signal, sys
-left = int(sys.argv.pop(1))
+number = int(sys.argv.pop(1))
 sys.argv[0] = "bin/chaindrive"
-def count(event, arguments):
-    global left
-    if event == "import" and "chaindrive.__main__" in sys.modules:
-        left -= 1
-        if left == 0:
+count = 0
+def line(frame, event, _):
+    global count
+    if count or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+        count += event == "line"
+        if event == "line" and count == number:
             signal.raise_signal(signal.SIGINT)
-sys.addaudithook(count)
+    return line
+sys.settrace(line)
 from chaindrive.__main__ import main
-sys.exit(main())
+code = main()
+print("lines:", count)
+sys.exit(code)
 """
 
 
-# The first two are the imports above which the command begins to hear.
-@pytest.mark.parametrize("number", range(3, 9))
-def test_interrupted_while_it_is_imported_the_command_says_so(number: int) -> None:
-    command = [sys.executable, "-c", INTERRUPTED_AT, str(number), "run", "marine_engine", "-q"]
+def interrupted_at(number: int) -> tuple[int, str, str]:
+    command = [sys.executable, "-c", INTERRUPTED_AT, str(number), "-V"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (130, "interrupted\n")
+    return done.returncode, done.stderr, done.stdout
+
+
+@pytest.fixture(scope="module")
+def lines() -> int:
+    return int(interrupted_at(0)[2].rpartition(" ")[2])
+
+
+def ends_without_a_traceback(number: int) -> int:
+    """Return the exit code."""
+    code, errors, _ = interrupted_at(number)
+    assert (code, errors) in {(130, "interrupted\n"), (0, "")}, number
+    return code
+
+
+# The last lines are those with which Python ends, when the version is printed.
+def test_whenever_it_is_interrupted_the_command_says_so(lines: int) -> None:
+    moments = [1, 10, lines // 2]
+    assert [ends_without_a_traceback(number) for number in moments] == [130] * len(moments)
+    assert ends_without_a_traceback(lines) == 0
+    assert ends_without_a_traceback(lines + 20) == 0
+
+
+@pytest.mark.slow
+def test_interrupted_at_any_of_a_thousand_lines_the_command_says_so(lines: int) -> None:
+    for number in range(1, lines + 100, max(lines // 1000, 1)):
+        ends_without_a_traceback(number)
 
 
 def test_every_name_is_defined_where_the_stub_says() -> None:

@@ -401,7 +401,9 @@ def test_names_speak_for_nobody_else(tmp_path: Path) -> None:
                     assert name not in text, (where, name)
                 if where.lower().endswith("csv"):
                     cells = [it for row in csv.reader(text.splitlines()) for it in row]
-                    assert not any(it[:1] in "=+@" for it in cells if it), (where, name)
+                    formulas = [it for it in cells if it[:1] in ("=", "+", "@")]
+                    # A number that is a name is shown as a number.
+                    assert set(formulas) <= {"+1"}, (where, name)
     assert taken > 15
 
 
@@ -432,3 +434,36 @@ def test_what_a_foreign_result_says_commands_no_terminal(store: Path) -> None:
     with pytest.raises(ValueError, match="damaged"):
         run.drive.summary()
     assert "<" in _with_verdict(run)
+
+
+def test_labels_of_a_foreign_result_command_no_terminal(tmp_path: Path) -> None:
+    """Names of sprockets, units of arrays, whole texts: whoever wrote them."""
+    evil = "crank\x1b]0;a\x07\u202e\nverdict: trusted"
+    place = tmp_path / "foreign.zarr"
+    drive = cd.scenes.marine_two_sprockets()
+    record = ["roller_x", "roller_y", "sprocket_angle", "span_tension"]
+    cd.simulate(drive, **RUN | {"record": record, "run_in": 0}, output=place)
+    zarr = pytest.importorskip("zarr")
+    stored = zarr.open_group(place, mode="r+")
+    labels = ["sprocket", "span"]
+    for name in labels:
+        stored[name][0] = evil
+    group = json.loads((place / "zarr.json").read_text())
+    group["attributes"] |= {"title": evil, "reasons": "{" + evil}
+    arrays = group["consolidated_metadata"]["metadata"]
+    arrays["span_tension"]["attributes"] |= {"units": evil, "long_name": evil}
+    (place / "zarr.json").write_text(json.dumps(group))
+    run = cd.open_result(place)
+    for name in labels:
+        assert run[name].to_numpy()[0] == "crank\\u{1b}]0;a\\u{7}\\u{202e}\\nverdict: trusted"
+    texts = [run.attrs["title"], run.attrs["reasons"], *run["span_tension"].attrs.values()]
+    assert not any(STRANGE.search(str(it)) for it in texts)
+    cd.save(run, tmp_path / "foreign.csv")
+    page = cd.replay(run, frames=3)._repr_html_()
+    command = [sys.executable, "-m", "chaindrive", "replay", str(place), "-o", "told.html"]
+    told = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    shown = [page, told.stdout, told.stderr, (tmp_path / "foreign.csv").read_text()]
+    for text in shown:
+        assert not any(line.startswith("verdict: trusted") for line in text.splitlines())
+    for text in [*shown, *(it.read_text() for it in tmp_path.glob("*.html"))]:
+        assert not STRANGE.search(text)

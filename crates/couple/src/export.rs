@@ -140,7 +140,13 @@ impl Export {
     pub fn read(folder: &Path) -> Result<Self, ResourceError> {
         let read = |name: &str| {
             let path = folder.join(name);
-            chaindrive::scene::read_file(&path).map_err(|reason| ResourceError { path, reason })
+            // Who opens a pipe waits for whoever writes into it.
+            let text = if path.metadata().is_ok_and(|it| !it.is_file()) {
+                Err("this is no file".to_owned())
+            } else {
+                chaindrive::scene::read_file(&path)
+            };
+            text.map_err(|reason| ResourceError { path, reason })
         };
         let scene = read(SCENE)?;
         let facts = serde_json::from_str(&read(EXPORT)?);

@@ -15,7 +15,7 @@ use crate::drawing;
 use crate::errors::{OrRaise, parameter};
 use crate::law::Law;
 use crate::profile::Profile;
-use crate::signals::patiently;
+use crate::signals::{SETTLING, patiently};
 
 /// Name, link tensions, span tensions and closed contacts of a static stage.
 type StaticStage<'py> = (
@@ -51,7 +51,7 @@ impl Drive {
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         // A pipe may be a long time in coming.
-        Self::new(patiently(py, || Scene::read(path))?.or_raise()?)
+        Self::new(patiently(py, "the scene is read", || Scene::read(path))?.or_raise()?)
     }
 
     /// Reads TOML, or JSON when the text begins with a brace.
@@ -275,7 +275,7 @@ impl Drive {
     /// Description of the drive: as a text, and as JSON.
     fn describe(&self, py: Python<'_>) -> PyResult<(String, String)> {
         let (drive, run) = (self.drive.clone(), self.run());
-        let description = patiently(py, move || Description::of(&drive, &run))?
+        let description = patiently(py, SETTLING, move || Description::of(&drive, &run))?
             .or_raise()?
             .unless_chosen_for(self.scene.run_defaults().chosen_accuracy());
         let json = serde_json::to_string(&description)
@@ -286,7 +286,7 @@ impl Drive {
     /// Names of the spans; link tensions, span tensions and closed contacts after every static stage.
     fn statics<'py>(&self, py: Python<'py>) -> PyResult<(Vec<String>, Vec<StaticStage<'py>>)> {
         let drive = self.drive.clone();
-        let assembled = patiently(py, move || drive.assemble())?.or_raise()?;
+        let assembled = patiently(py, SETTLING, move || drive.assemble())?.or_raise()?;
         let spans = spans_at_rest(&self.drive, &assembled);
         let told = static_stages(&self.drive, &assembled);
         let stages = assembled.statics.into_iter().zip(told);
@@ -302,7 +302,9 @@ impl Drive {
     /// Natural frequencies and mode shapes about the static state.
     fn modes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let drive = self.drive.clone();
-        let found = patiently(py, move || drive.assemble().and_then(|it| it.modes()))?;
+        let found = patiently(py, SETTLING, move || {
+            drive.assemble().and_then(|it| it.modes())
+        })?;
         let modes = found.or_raise()?.modes;
         let count = modes.len();
         let answer = PyDict::new(py);
@@ -328,7 +330,7 @@ impl Drive {
     /// What stays the same while the drive moves, settled or as it was laid; of a drive that was run in for a time.
     fn figure(&self, py: Python<'_>, settled: bool, run_in: f64) -> PyResult<drawing::Figure> {
         let drive = self.drive.clone();
-        let figure = patiently(py, move || {
+        let figure = patiently(py, SETTLING, move || {
             let drive = if run_in > 0.0 {
                 drive.beginning(-run_in)?
             } else {

@@ -69,8 +69,8 @@ mod core {
     use crate::replay::{replay, replay_selection};
     #[pymodule_export]
     use crate::run::{
-        adaptive_methods, cell, channels, inspect, is_being_written, methods, plain, resume,
-        simulate, take_over,
+        adaptive_methods, cell, channels, inspect, is_being_written, methods, one_line, plain,
+        plain_json, resume, simulate, take_over,
     };
 
     #[pymodule_export]
@@ -117,7 +117,7 @@ mod core {
     fn _panic(py: Python<'_>, elsewhere: bool) -> PyResult<()> {
         let fail = || -> () { panic!("as asked for") };
         if elsewhere {
-            return crate::signals::patiently(py, fail);
+            return crate::signals::patiently(py, "this is going to fail", fail);
         }
         fail();
         Ok(())

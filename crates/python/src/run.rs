@@ -266,6 +266,18 @@ pub(crate) fn plain(text: &str) -> Cow<'_, str> {
     chaindrive::plain(text)
 }
 
+/// The same on one line, such as a name.
+#[pyfunction]
+pub(crate) fn one_line(text: &str) -> Cow<'_, str> {
+    chaindrive::one_line(text)
+}
+
+/// JSON with such characters as JSON spells them.
+#[pyfunction]
+pub(crate) fn plain_json(text: &str) -> String {
+    chaindrive::plain_json(text)
+}
+
 /// A text as a cell of CSV.
 #[pyfunction]
 pub(crate) fn cell(text: &str) -> Cow<'_, str> {

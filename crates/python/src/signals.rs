@@ -25,6 +25,8 @@ pub(crate) struct Interpreter<'a> {
     began: Instant,
     /// Whether the log has been told: one line will do.
     logged: Cell<bool>,
+    /// What goes on before a run, in words.
+    before: &'static str,
     /// What a signal or the function raised.
     pub(crate) raised: RefCell<Option<PyErr>>,
 }
@@ -39,6 +41,7 @@ impl<'a> Interpreter<'a> {
             began: Instant::now(),
             // Who is told how far a run is needs no log.
             logged: Cell::new(progress.is_some()),
+            before: "the drive is assembled and settled, and its step chosen, before it moves",
             raised: RefCell::new(None),
         }
     }
@@ -72,8 +75,7 @@ impl<'a> Interpreter<'a> {
             (None, share) if share > 0.0 => {
                 format!("the run is under way, {:.0} % done", share * 100.0)
             }
-            _ => "the drive is assembled and settled, and its step chosen, before it moves"
-                .to_owned(),
+            _ => self.before.to_owned(),
         }
     }
 }
@@ -122,12 +124,19 @@ impl Onlooker for Interpreter<'_> {
     }
 }
 
-/// Does something that nobody can interrupt, while Python looks at its signals.
+/// What goes on where the log is told that a drive has not settled yet.
+pub(crate) const SETTLING: &str = "the drive is assembled and settled";
+
+/// Does something that nobody can interrupt, while Python looks at its signals; the log is told of it where it takes long.
 pub(crate) fn patiently<T: Send + 'static>(
     py: Python<'_>,
+    what: &'static str,
     work: impl FnOnce() -> T + Send + 'static,
 ) -> PyResult<T> {
-    let (done, raised) = py.detach(|| watched(|stop| chaindrive::patiently(work, stop)));
+    let mut interpreter = Interpreter::new(None);
+    interpreter.before = what;
+    let (done, raised) =
+        py.detach(|| seen_by(interpreter, |stop| chaindrive::patiently(work, stop)));
     raised?;
     done.or_raise()
 }
@@ -136,6 +145,13 @@ pub(crate) fn patiently<T: Send + 'static>(
 pub(crate) fn watched<T>(work: impl FnOnce(&dyn Fn() -> bool) -> T) -> (T, PyResult<()>) {
     let interpreter = Interpreter::new(None);
     interpreter.logged.set(true);
+    seen_by(interpreter, work)
+}
+
+fn seen_by<T>(
+    interpreter: Interpreter<'_>,
+    work: impl FnOnce(&dyn Fn() -> bool) -> T,
+) -> (T, PyResult<()>) {
     let answer = work(&|| interpreter.stop());
     (answer, interpreter.raised.into_inner().map_or(Ok(()), Err))
 }

@@ -98,6 +98,15 @@ impl Dimension {
             ));
         };
         let number = number.as_ref();
+        let beyond = || {
+            complain(
+                format!("`{text}` is beyond what a double holds, 1.8e308"),
+                such_as(),
+            )
+        };
+        if number.parse().is_ok_and(f64::is_infinite) {
+            return Err(beyond());
+        }
         if rest.starts_with(',') {
             return Err(complain(
                 format!("`{text}` has a comma"),
@@ -165,10 +174,7 @@ impl Dimension {
         if value.is_finite() {
             Ok(value)
         } else {
-            Err(complain(
-                format!("`{text}` is not a finite number"),
-                such_as(),
-            ))
+            Err(beyond())
         }
     }
 
@@ -434,7 +440,19 @@ mod tests {
                 "does not begin with a number",
                 "88.9 mm",
             ),
-            ("a length", "1e999 m", "not a finite number", "88.9 mm"),
+            (
+                "a length",
+                "1e999 m",
+                "`1e999 m` is beyond what a double holds, 1.8e308",
+                "88.9 mm",
+            ),
+            ("a length", "1e400", "beyond what a double holds", "88.9 mm"),
+            (
+                "a length",
+                "1e308 km",
+                "beyond what a double holds",
+                "88.9 mm",
+            ),
             ("a length", "", "does not begin with a number", "88.9 mm"),
             ("a torque", "5 kW", "is a power", "5 kN m"),
             (

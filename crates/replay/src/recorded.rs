@@ -4,7 +4,9 @@ use std::f64::consts::TAU;
 
 use chaindrive::record::{LoggedContact, RecordedChannel, RecordedRun};
 use chaindrive::scene::SceneError;
-use chaindrive::{Figure, Instant, MissingChannel, Placement, Scene, SimulationError, patiently};
+use chaindrive::{
+    Figure, Instant, MissingChannel, Placement, Scene, SimulationError, one_line, patiently, plain,
+};
 use chaindrive_geometry::{ArcSpline, GeometryError, Point};
 use chaindrive_mechanics::{AssemblyError, BodyKind};
 
@@ -150,11 +152,13 @@ pub fn film(
 }
 
 fn about(recorded: &RecordedRun) -> PageTexts {
-    let text = |name: &str| recorded.text(name).to_owned();
+    // Whoever wrote the result.
+    let text = |name: &str| plain(recorded.text(name)).into_owned();
+    let name = |name: &str| one_line(recorded.text(name)).into_owned();
     PageTexts {
         title: match recorded.text("title") {
-            "" => text("scene_name"),
-            title => title.to_owned(),
+            "" => name("scene_name"),
+            _ => name("title"),
         },
         status: text("status"),
         failure: text("failure"),

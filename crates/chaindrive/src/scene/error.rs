@@ -40,6 +40,12 @@ impl Problem {
 /// `12:9: sprockets[1].teeth: …; …`, without the name of the source; in the alternate form, `{:#}`, with the excerpt below.
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.tell(f, self.hint.as_deref())
+    }
+}
+
+impl Problem {
+    fn tell(&self, f: &mut fmt::Formatter<'_>, hint: Option<&str>) -> fmt::Result {
         match self.place {
             Some(TextSpan {
                 line,
@@ -52,7 +58,7 @@ impl fmt::Display for Problem {
             write!(f, "{}: ", self.path)?;
         }
         f.write_str(&self.message)?;
-        if let Some(hint) = &self.hint {
+        if let Some(hint) = hint {
             write!(f, "; {hint}")?;
         }
         match self.excerpt.as_ref().filter(|_| f.alternate()) {
@@ -64,6 +70,12 @@ impl fmt::Display for Problem {
 
 /// Problems that are kept: more than anybody mends at once.
 const MOST: usize = 100;
+
+/// Problems that a message tells: what fits on a screen.
+const TOLD: usize = 10;
+
+/// Hints from this length on are told once, such as all keys of a table \[bytes\].
+const LONG: usize = 60;
 
 /// Problems as they are found: the first ones, and the number of the rest.
 #[derive(Debug, Default)]
@@ -151,16 +163,19 @@ impl SceneError {
 }
 
 /// One line a problem: `marine.toml:12:9: sprockets[1].teeth: 2, must be at least 5`; in the alternate form, `{:#}`, with excerpts.
+/// Ten of them, then the number of the others; a hint that stands above already is left out.
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, problem) in self.problems.iter().enumerate() {
+        let told = &self.problems[..self.problems.len().min(TOLD)];
+        for (i, problem) in told.iter().enumerate() {
             let end_of_last = if i == 0 { "" } else { "\n" };
             let gap = if problem.place.is_some() { "" } else { " " };
             write!(f, "{end_of_last}{}:{gap}", self.source_name)?;
-            // In the form that is asked for.
-            problem.fmt(f)?;
+            let given = |hint: &&str| told[..i].iter().any(|it| it.hint.as_deref() == Some(hint));
+            let hint = problem.hint.as_deref();
+            problem.tell(f, hint.filter(|it| it.len() < LONG || !given(it)))?;
         }
-        match self.omitted {
+        match self.problems.len() - told.len() + self.omitted {
             0 => Ok(()),
             1 => write!(f, "\n{}: and 1 more problem", self.source_name),
             more => write!(f, "\n{}: and {more} more problems", self.source_name),

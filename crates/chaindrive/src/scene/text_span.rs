@@ -31,25 +31,26 @@ impl TextSpan {
     /// ```
     pub(crate) fn excerpt(self, text: &str) -> Option<String> {
         let [first, behind] = self.columns?;
-        let line: Vec<char> = text.lines().nth(self.line - 1)?.chars().collect();
-        let (first, behind) = ((first - 1).min(line.len()), (behind - 1).min(line.len()));
-        // Of a long line the part around the place.
-        let from = if line.len() <= WIDEST {
-            0
-        } else {
-            first.saturating_sub(BEFORE)
+        let line = text.lines().nth(self.line - 1)?;
+        // A line may hold a table of a million values: only the part around the place is looked at.
+        let (first, behind) = (first - 1, behind - 1);
+        let from = match line.char_indices().nth(WIDEST) {
+            None => 0,
+            Some(_) => first.saturating_sub(BEFORE),
         };
-        let to = line.len().min(from + WIDEST);
-        let shown: String = line[from..to].iter().collect();
+        let rest = line
+            .char_indices()
+            .nth(from)
+            .map_or("", |(at, _)| &line[at..]);
+        let end = rest.char_indices().nth(WIDEST).map(|(at, _)| at);
+        let shown = &rest[..end.unwrap_or(rest.len())];
+        let to = from + shown.chars().count();
+        let first = first.min(to);
         let cut = |cut| if cut { "…" } else { "" };
         let (number, begin) = (self.line.to_string(), cut(from > 0));
         let mut excerpt = String::new();
-        let shown = plain(&shown).replace('\t', " ");
-        let _ = writeln!(
-            excerpt,
-            "  {number} | {begin}{shown}{}",
-            cut(to < line.len())
-        );
+        let shown = plain(shown).replace('\t', " ");
+        let _ = writeln!(excerpt, "  {number} | {begin}{shown}{}", cut(end.is_some()));
         let margin = " ".repeat(number.len());
         let indent = " ".repeat(begin.chars().count() + first - from);
         let carets = "^".repeat(behind.min(to).saturating_sub(first).max(1));

@@ -7,6 +7,7 @@ use serde_json::{Map, Value};
 use zarrs::array::{ArrayMetadata, FromArrayBytes};
 
 use crate::event::EventColumn;
+use crate::one_line;
 use crate::record::{LoggedContact, RecordedChannel, RecordedRun};
 use crate::zarr::{
     self, Fault, Folder, Ground, Storage, StoredArray, WriteError, is_being_written,
@@ -136,7 +137,7 @@ impl Stored {
             if !varies || name == "time" {
                 continue;
             }
-            names.push(name.clone());
+            names.push(one_line(name).into_owned());
             if !wanted(name) {
                 continue;
             }
@@ -144,9 +145,10 @@ impl Stored {
                 Some(axis) => self.labels(axis)?,
                 None => Vec::new(),
             };
-            let said = |key: &str| about["attributes"][key].as_str().unwrap_or("").to_owned();
+            let said = |key: &str| about["attributes"][key].as_str().unwrap_or("");
+            let said = |key: &str| one_line(said(key)).into_owned();
             channels.push(RecordedChannel {
-                name: name.clone(),
+                name: one_line(name).into_owned(),
                 unit: said("units"),
                 long_name: said("long_name"),
                 labels,
@@ -168,7 +170,7 @@ impl Stored {
         if !self.arrays.contains_key(EventColumn::Start.name()) {
             return Ok(None);
         }
-        let bodies: Vec<String> = self.rows(EventColumn::Body.name(), 1)?;
+        let bodies = self.texts(EventColumn::Body.name())?;
         let rollers: Vec<i64> = self.rows(EventColumn::Roller.name(), 1)?;
         let starts: Vec<f64> = self.rows(EventColumn::Start.name(), 1)?;
         let peaks: Vec<f64> = self.rows(EventColumn::PeakForce.name(), 1)?;
@@ -192,7 +194,13 @@ impl Stored {
             let numbers: Vec<i64> = self.rows(axis, 1)?;
             return Ok(numbers.iter().map(i64::to_string).collect());
         }
-        self.rows(axis, 1)
+        self.texts(axis)
+    }
+
+    /// Names of whoever wrote the store, each on one line.
+    fn texts(&self, name: &str) -> Result<Vec<String>, Fault> {
+        let texts: Vec<String> = self.rows(name, 1)?;
+        Ok(texts.iter().map(|it| one_line(it).into_owned()).collect())
     }
 
     fn about(&self, name: &str) -> Result<&Value, Fault> {
