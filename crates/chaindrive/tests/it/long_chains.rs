@@ -122,7 +122,7 @@ fn a_chain_comes_to_rest_on_a_rail_far_below_it() {
     let seen = simulation.next_sample().expect("a sample").expect("no end");
     let rollers = seen.roller_x.iter().zip(&seen.roller_y);
     let middle = rollers.filter(|(x, y)| **y < 0.0 && (**x - 1.5).abs() < 0.5);
-    let heights: Vec<f64> = middle.map(|(_, y)| y + 0.1108 - 0.009525).collect();
+    let heights: Vec<f64> = middle.map(|(_, y)| y + 0.1108 - 0.009_525).collect();
     assert!(heights.len() > 25);
     for height in heights {
         assert!(height.abs() < 2e-5, "{height} m above the rail");
