@@ -343,11 +343,13 @@ fn announce<S: Sink>(
     simulation: &Simulation,
     sink: &mut S,
 ) -> Result<(), RunError<S::Error>> {
-    let full = request
-        .scene
-        .resolved_for(&provenance.run, simulation.method());
-    provenance.assumed = request.scene.assumed().map_err(RunError::Scene)?;
-    provenance.resolved_scene = Some(full.map_err(RunError::Scene)?.text().to_owned());
+    if sink.keeps_attributes() {
+        let run = provenance.run.table(simulation.method());
+        let resolved = request.scene.resolved_text(run);
+        let (text, assumed) = resolved.map_err(RunError::Scene)?;
+        provenance.resolved_scene = Some(text);
+        provenance.assumed = assumed;
+    }
     let channels = channels(request, simulation).map_err(RunError::Start)?;
     sink.begin(simulation, &channels, provenance)
         .map_err(RunError::Sink)
@@ -376,14 +378,18 @@ fn close<S: Sink>(
     let assembled = simulation.assembled();
     let wraps = wraps(&assembled.drive, assembled);
     verdict.chains = ChainVerdict::of(summary, simulation, &wraps);
-    let attributes = attributes(
-        provenance,
-        simulation,
-        Some((summary, &verdict)),
-        summary.samples,
-        ending,
-        judgement,
-    );
+    let attributes = if sink.keeps_attributes() {
+        attributes(
+            provenance,
+            simulation,
+            Some((summary, &verdict)),
+            summary.samples,
+            ending,
+            judgement,
+        )
+    } else {
+        Map::new()
+    };
     sink.end(&End {
         simulation,
         summary,

@@ -145,7 +145,7 @@ impl Run {
     }
 
     /// The settings as a scene writes them in `[run]`, once the method is chosen; what the run leaves open is absent.
-    fn table(&self, method: Method) -> Map<String, Json> {
+    pub(crate) fn table(&self, method: Method) -> Map<String, Json> {
         let mut table = Map::new();
         table.insert("until".into(), self.until.into());
         if self.run_in != RunIn::Usual {
@@ -175,7 +175,8 @@ impl Scene {
     /// # Errors
     /// As [`Scene::drive`].
     pub fn resolved_for(&self, run: &Run, method: Method) -> Result<Self, SceneError> {
-        self.resolved_with(run.table(method))
+        let (text, _) = self.resolved_text(run.table(method))?;
+        Self::from_toml(&text, self.name())
     }
 }
 

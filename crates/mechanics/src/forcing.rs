@@ -215,11 +215,13 @@ fn orders(curve: impl Fn(f64) -> f64) -> Vec<u32> {
     let points: Vec<f64> = (0..POINTS)
         .map(|i| curve(f64::from(i) / f64::from(POINTS)))
         .collect();
+    let circle: Vec<[f64; 2]> = (0..POINTS)
+        .map(|i| TAU * f64::from(i) / f64::from(POINTS))
+        .map(|at| [at.cos(), at.sin()])
+        .collect();
     let amplitude = |order: u32| {
-        let turns = (0..POINTS).map(|i| TAU * f64::from(order * i % POINTS) / f64::from(POINTS));
-        let parts = turns
-            .zip(&points)
-            .map(|(at, f)| [f * at.cos(), f * at.sin()]);
+        let places = (0..POINTS).map(|i| circle[(order * i % POINTS) as usize]);
+        let parts = places.zip(&points).map(|([c, s], f)| [f * c, f * s]);
         let [re, im] = parts.fold([0.0; 2], |[re, im], [c, s]| [re + c, im + s]);
         re.hypot(im)
     };

@@ -42,6 +42,11 @@ pub trait Sink {
         true
     }
 
+    /// Whether what the result says about itself is kept; otherwise its attributes are not made, and are empty.
+    fn keeps_attributes(&self) -> bool {
+        true
+    }
+
     /// Takes the last sample of the simulation.
     ///
     /// # Errors

@@ -53,11 +53,14 @@ impl Scene {
         Self::from_toml(&resolved.text(), &self.name)
     }
 
-    /// The same with other settings of the run.
-    pub(crate) fn resolved_with(&self, run: Map<String, Json>) -> Result<Self, SceneError> {
+    /// Its text with other settings of the run, and what [`assumed`](Self::assumed) tells of it.
+    pub(crate) fn resolved_text(
+        &self,
+        run: Map<String, Json>,
+    ) -> Result<(String, Vec<String>), SceneError> {
         let mut resolved = ResolvedScene::of(self)?;
         resolved.settle_on(run);
-        Self::from_toml(&resolved.text(), &self.name)
+        Ok((resolved.text(), resolved.assumed()))
     }
 
     /// Inputs that nobody measured or gave, as `path = value`: those whose source is the word "assumed", settings of the run left aside.

@@ -139,6 +139,10 @@ impl Sink for KeptChannels {
         self.wanted
     }
 
+    fn keeps_attributes(&self) -> bool {
+        false
+    }
+
     fn push(&mut self, simulation: &Simulation) -> Result<(), SimulationError> {
         if self.wanted {
             self.recording.push(simulation.observation());

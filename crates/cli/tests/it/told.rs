@@ -11,7 +11,9 @@ fn the_summary_of_a_run() {
     let arguments: Vec<&str> = line.split(' ').collect();
     let (code, out, err) = run(folder.path(), &arguments);
     assert_eq!(code, 0, "{err}");
-    insta::assert_snapshot!(without_numbers(&out));
+    // The horizon of span tensions is about as long as the record: last bits decide whether it is told.
+    let told = without_numbers(&out).replace(" to # ms for span tensions,", "");
+    insta::assert_snapshot!(told);
 }
 
 #[test]

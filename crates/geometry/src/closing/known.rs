@@ -4,21 +4,19 @@
 //! or pretension, marches the same ways. A closing depends on nothing but its wheels, pitch and phase, so the answer of before is the
 //! answer.
 
-use std::cell::RefCell;
 use std::collections::HashMap;
+use std::sync::{LazyLock, Mutex, PoisonError};
 
 use super::Closing;
 use crate::route::{Side, WheelKind};
 use crate::{GeometryError, Wheel};
 
-/// Closings that a thread keeps; then it begins anew. One drive asks for some four hundred; each takes some two hundred bytes.
-const MOST: usize = 4096;
+/// Closings that are kept; then it begins anew. One drive asks for some four hundred; each takes some three hundred bytes.
+const MOST: usize = 16_384;
 
-thread_local! {
-    static KNOWN: RefCell<HashMap<Box<[u64]>, Closing>> = RefCell::new(HashMap::new());
-}
+static KNOWN: LazyLock<Mutex<HashMap<Box<[u64]>, Closing>>> = LazyLock::new(Mutex::default);
 
-/// What this thread has found before for exactly these wheels, pitch and phase, or else what `find` finds.
+/// What was found before for exactly these wheels, pitch and phase, or else what `find` finds.
 pub(super) fn known(
     wheels: &[Wheel],
     pitch: f64,
@@ -26,17 +24,17 @@ pub(super) fn known(
     find: impl FnOnce() -> Result<Closing, GeometryError>,
 ) -> Result<Closing, GeometryError> {
     let question = question(wheels, pitch, phase);
-    let before = KNOWN.with_borrow(|known| known.get(&question).cloned());
-    if let Some(closing) = before {
-        return Ok(closing);
+    // Whole closings only are put in: a thread that panics elsewhere leaves none half written.
+    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(closing) = known().get(&question) {
+        return Ok(closing.clone());
     }
     let closing = find()?;
-    KNOWN.with_borrow_mut(|known| {
-        if known.len() >= MOST {
-            known.clear();
-        }
-        known.insert(question, closing.clone());
-    });
+    let mut known = known();
+    if known.len() >= MOST {
+        known.clear();
+    }
+    known.insert(question, closing.clone());
     Ok(closing)
 }
 

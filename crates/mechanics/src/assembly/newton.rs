@@ -97,8 +97,8 @@ pub(super) fn settle(
         if !(present || only) {
             continue;
         }
-        // A slack chain has no stiffness across itself until its weight is on it.
-        let mut step = if taut { 0.25 } else { 1.0 };
+        // Teeth take a load over one after the other.
+        let mut step = if taut && stage == "load" { 0.5 } else { 1.0 };
         let mut share = 0.0_f64;
         while share < 1.0 {
             let next = (share + step).min(1.0);
