@@ -37,6 +37,7 @@ PARTS = (
     "inner_loop",
     "features",
     "length",
+    "assembly",
     "real_time",
     "presets",
     "neighbours",
