@@ -5,10 +5,11 @@
 //! ```
 
 use chaindrive_contact::{Approach, PreparedLaw, Response};
+use chaindrive_integrate::{Registers, kernel};
 use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
-use super::{FAR, LaneTally, MemoryLanes, Onsets, SurfaceLaw};
+use super::{ContactMemory, FAR, LaneTally, MemoryField, MemoryLanes, Onsets, SurfaceLaw};
 use crate::lanes::{Lane, Mask, Wide};
 use crate::surface::Surface;
 
@@ -204,22 +205,38 @@ impl BoreContact {
         [pin_after.select(hole, -pin), pin_after.select(pin, -hole)]
     }
 
-    /// From the centres of the sides before and after along n to where they touch \[m\].
-    pub(crate) fn side_levers(&self, pin_after: bool, depth: f64) -> [f64; 2] {
-        let [pin, hole] = self.levers(depth);
-        // Seen along n, the touching point lies behind the pin's centre if the pin is on the side before.
-        if pin_after {
-            [hole, pin]
-        } else {
-            [-pin, -hole]
-        }
-    }
-
-    /// Stored energy \[J\] of a contact with this gap \[m\].
-    pub(crate) fn energy(&self, gap: f64) -> f64 {
-        self.law.energy(-gap)
+    /// Energy stored in all closed contacts of a memory \[J\].
+    pub(crate) fn stored(&self, memory: &ContactMemory, registers: Registers) -> f64 {
+        registers
+            .dispatch(energies(self, memory))
+            .unwrap_or_else(|| {
+                let gaps = memory.each(MemoryField::Gap);
+                let closed = gaps.filter(|gap| *gap < 0.0);
+                closed.map(|gap| self.law.energy(-gap)).sum()
+            })
     }
 }
+
+kernel!(
+    /// Energy stored in all closed contacts; none where the law has no form of it on lanes.
+    fn energies<'a, S: Simd>(
+        w: Wide<S>,
+        bore: &'a BoreContact,
+        memory: &'a ContactMemory,
+    ) -> Option<f64> {
+        let zero = w.splat(0.0);
+        let mut sum = zero;
+        for gaps in memory.eights(MemoryField::Gap) {
+            for start in (0..gaps.len()).step_by(Wide::<S>::COUNT) {
+                let depth = -w.load(gaps, start);
+                let closed = depth.greater(zero);
+                let energy = bore.lanes.energy(w, depth.max(zero))?;
+                sum += closed.select(energy, zero);
+            }
+        }
+        Some(sum.sum())
+    }
+);
 
 impl BoreContact {
     /// Answer of a contact that neither closes nor opens.
