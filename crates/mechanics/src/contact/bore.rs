@@ -169,6 +169,15 @@ impl BoreContact {
             let slip =
                 nx * uy - ny * ux + grip.levers[1] * apart.spin[1] - grip.levers[0] * apart.spin[0];
             let rubbing = law.rub::<S, true>(w, memory, lane, dt, &pressed, slip, tally);
+            if let Some(oil) = law.friction.beside_spring() {
+                // A spring that was stretched on the way has done the work of its mean force, not of the last one:
+                // what it stores and what it loses is what moved it, to the last place.
+                //     P = −½ (R₀ + R) v,   R₀ = −k z₀,   R = −k z
+                let before = w.splat(law.friction.stiffness(0.0)) * memory.stick(w, lane);
+                let now = -(rubbing.force.plus(w.splat(oil), slip));
+                let stretched = pressed.closed.select(now - before, zero);
+                tally.friction_loss = tally.friction_loss.minus(w.splat(0.5) * stretched, slip);
+            }
             grip.rub = rubbing.force;
             grip.drag = rubbing.drag;
             grip.secant = rubbing.secant;
