@@ -4,7 +4,7 @@ use chaindrive_integrate::Array;
 use pulp::Simd;
 
 use super::Linkage;
-use crate::lanes::Lane;
+use crate::lanes::{Lane, Wide};
 
 /// Along x, along y, and of the turning; that of link i stands after place i + 1, whole lanes.
 ///
@@ -81,4 +81,14 @@ impl ByLink {
         let all = kinds.zip(&self.turn[1..=links]);
         all.map(|((x, y), turn)| [*x, *y, *turn])
     }
+}
+
+/// Numbers of a lane of links, counted as [`ByLink`] does.
+#[inline(always)]
+pub(super) fn load<S: Simd>(w: Wide<S>, all: &ByLink, place: usize) -> [Lane<S>; 3] {
+    [
+        w.load(&all.x, place),
+        w.load(&all.y, place),
+        w.load(&all.turn, place),
+    ]
 }

@@ -18,10 +18,10 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Array, Weights, kernel};
 use pulp::Simd;
 
-use super::by_link::ByLink;
+use super::by_link::{ByLink, load};
 use super::equations::Sum;
 use super::posture::Posture;
-use super::reactions::{Inertia, Reactions, load};
+use super::reactions::{Inertia, Reactions};
 use super::{BorderedBlocks, JointState, Linkage};
 use crate::bodies::GroupBodies;
 use crate::joints::Mate;

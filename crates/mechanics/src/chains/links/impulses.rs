@@ -20,10 +20,10 @@ use pulp::Simd;
 
 use rows::{RowLane, Rows};
 
-use super::by_link::ByLink;
+use super::by_link::{ByLink, load};
 use super::equations::Sum;
 use super::inverse_blocks::InverseBlocks;
-use super::reactions::{Sections, load};
+use super::reactions::Sections;
 use super::{BorderedBlocks, Joining, JointState, Linkage};
 use crate::bodies::GroupBodies;
 use crate::contact::BoreContact;

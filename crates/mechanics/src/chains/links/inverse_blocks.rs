@@ -5,8 +5,7 @@ use nalgebra::Matrix3;
 use pulp::Simd;
 
 use super::Linkage;
-use super::by_link::ByLink;
-use super::reactions::load;
+use super::by_link::{ByLink, load};
 use crate::lanes::{Lane, Wide};
 
 /// Entries (0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2) of the inverse of every block, as [`ByLink`] has its numbers.

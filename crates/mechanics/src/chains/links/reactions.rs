@@ -15,7 +15,7 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Array, kernel};
 use pulp::Simd;
 
-use super::by_link::ByLink;
+use super::by_link::{ByLink, load};
 use super::inverse_blocks::InverseBlocks;
 use super::posture::Posture;
 use super::{Linkage, Shapes};
@@ -254,16 +254,6 @@ pub(super) fn arms<S: Simd>(w: Wide<S>, posture: &Posture, joint: usize) -> [Lan
         w.load(&posture.before.arm_y, joint),
         w.load(&posture.after.arm_x, joint),
         w.load(&posture.after.arm_y, joint),
-    ]
-}
-
-/// Numbers of a lane of links, counted as [`ByLink`] does.
-#[inline(always)]
-pub(super) fn load<S: Simd>(w: Wide<S>, all: &ByLink, place: usize) -> [Lane<S>; 3] {
-    [
-        w.load(&all.x, place),
-        w.load(&all.y, place),
-        w.load(&all.turn, place),
     ]
 }
 

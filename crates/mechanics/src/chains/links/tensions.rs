@@ -35,7 +35,7 @@ impl Linkage {
                     }
                 };
                 for (link, tension) in tensions.iter_mut().enumerate() {
-                    let along = self.along(posture, link);
+                    let along = along(posture, link);
                     let next = (link + 1) % self.joints.len();
                     *tension -= 0.5 * (push(link, along) + push(next, along));
                 }
@@ -46,7 +46,7 @@ impl Linkage {
             let Some(link) = body.filter(|body| *body < self.series.links) else {
                 return;
             };
-            let pull = 0.5 * self.along(posture, link).dot(&force);
+            let pull = 0.5 * along(posture, link).dot(&force);
             tensions[link] += if joint == link { -pull } else { pull };
         };
         for element in &joint_state.elements {
@@ -62,12 +62,12 @@ impl Linkage {
             }
         }
     }
+}
 
-    /// Direction of a link, of length one.
-    fn along(&self, posture: &Posture, link: usize) -> Vector {
-        let [start, end] = [0, 1].map(|end| posture.tip(link, end).place);
-        (end - start).normalize()
-    }
+/// Direction of a link, of length one.
+fn along(posture: &Posture, link: usize) -> Vector {
+    let [start, end] = [0, 1].map(|end| posture.tip(link, end).place);
+    (end - start).normalize()
 }
 
 kernel!(

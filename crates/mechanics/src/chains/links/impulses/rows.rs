@@ -5,8 +5,8 @@
 use chaindrive_integrate::{Array, Weights};
 use pulp::Simd;
 
-use crate::chains::links::by_link::ByLink;
-use crate::chains::links::reactions::{arms, load};
+use crate::chains::links::by_link::{ByLink, load};
+use crate::chains::links::reactions::arms;
 use crate::chains::links::{JointState, Linkage};
 use crate::contact::BoreContact;
 use crate::lanes::{Lane, Wide};
