@@ -25,8 +25,12 @@ impl Array {
     }
 
     /// Makes it as long, with a value in new places.
+    #[inline]
     pub fn resize(&mut self, count: usize, value: f64) {
-        self.0.resize(count, value);
+        // Most are as long already, step after step.
+        if self.0.len() != count {
+            self.0.resize(count, value);
+        }
     }
 
     /// Leaves nothing in it.

@@ -20,6 +20,7 @@ mod hinge;
 mod ideal_joints;
 mod implicit;
 mod impulses;
+mod inverse_blocks;
 mod joint_torques;
 mod meshing;
 pub(crate) mod model;
@@ -27,6 +28,8 @@ mod observe;
 mod posture;
 pub(crate) mod rates;
 mod reactions;
+mod stiffness_sums;
+mod tensions;
 pub(crate) mod test_access;
 
 use chaindrive_geometry::Vector;
@@ -66,8 +69,6 @@ pub(crate) struct FreeRollers {
     pub(crate) bearing: BoreContact,
     /// Body of the roller at every joint.
     pub(crate) body: Vec<Option<usize>>,
-    /// The link that each of them sits on.
-    pub(crate) link: Vec<usize>,
 }
 
 /// Connection of neighbouring links.
@@ -137,7 +138,7 @@ pub(crate) struct JointState {
     pub(crate) normal: Array,
     /// Stiffness, damping and springs of friction by body, for the time scales.
     #[serde(skip)]
-    pub(crate) sums: Vec<[rates::SymmetricMatrix; 3]>,
+    pub(crate) sums: stiffness_sums::StiffnessSums,
     /// Accelerations and inverse masses of particles, which the kernel of the teeth asks for and links have no use for.
     #[serde(skip)]
     pub(crate) idle: RollerArrays,
@@ -312,18 +313,15 @@ impl Linkage {
 
     /// Elastic energy of the joints \[J\].
     pub(crate) fn stored(&self, memory: &JointMemory) -> f64 {
+        let registers = self.series.registers;
         let mut sum = 0.0;
         if let Joining::Clearance(bearing) = &self.joining {
-            let gaps = memory.pins.each(MemoryField::Gap).take(self.joints.len());
-            let closed = gaps.filter(|gap| *gap < 0.0);
-            sum += closed.map(|gap| bearing.energy(gap)).sum::<f64>();
+            sum += bearing.stored(&memory.pins, registers);
         }
         if let Some(free) = &self.free_rollers {
-            let closed = memory
-                .bushes
-                .each(MemoryField::Gap)
-                .filter(|gap| *gap < 0.0);
-            sum += closed.map(|gap| free.bearing.energy(gap)).sum::<f64>();
+            let gaps = memory.bushes.each(MemoryField::Gap);
+            let closed = gaps.filter(|gap| *gap < 0.0);
+            sum += closed.map(|gap| free.bearing.law.energy(-gap)).sum::<f64>();
         }
         sum
     }
@@ -365,46 +363,6 @@ impl Linkage {
             Joining::Hinges(_) => joint_state.hinge_forces[joint],
             Joining::Clearance(_) if self.pairs.pin_after(joint) => joint_state.pins.push(joint),
             Joining::Clearance(_) => -joint_state.pins.push(joint),
-        }
-    }
-
-    /// Appends the tension of all links \[N\]: half of what stretches them from both ends, joints, teeth and given loads together.
-    fn link_tensions(&self, joint_state: &JointState, out: &mut Vec<f64>) {
-        let first = out.len();
-        out.resize(first + self.series.links, 0.0);
-        let tensions = &mut out[first..];
-        let mut load = |body: Option<usize>, joint: usize, force: Vector| {
-            // Rollers have no ends.
-            let Some(link) = body.filter(|body| *body < self.series.links) else {
-                return;
-            };
-            let [start, end] = [0, 1].map(|end| joint_state.posture.tip(link, end).place);
-            // T = ½ (F₂ − F₁)·d, F at the ends of the link along d
-            let pull = 0.5 * (end - start).normalize().dot(&force);
-            tensions[link] += if joint == link { -pull } else { pull };
-        };
-        for joint in 0..self.joints.len() {
-            let Some(mates) = self.joints[joint].pair else {
-                continue;
-            };
-            let force = self.pin_force(joint_state, joint);
-            for (mate, force) in mates.into_iter().zip([-force, force]) {
-                if let Mate::Link { link, .. } = mate {
-                    load(Some(link), joint, force);
-                }
-            }
-        }
-        for element in &joint_state.elements {
-            load(element.a, element.joint, element.push());
-            if let Partner::Body(body) = element.b {
-                load(Some(body), element.joint, -element.push());
-            }
-        }
-        for (index, held) in self.series.ends.iter().enumerate() {
-            if let End::Pulled { force } = &held.end {
-                let link = if index == 0 { 0 } else { self.series.links - 1 };
-                load(Some(link), link + index, *force);
-            }
         }
     }
 }

@@ -5,10 +5,11 @@
 //! ```
 
 use chaindrive_contact::{Approach, PreparedLaw, Response};
+use chaindrive_integrate::{Registers, kernel};
 use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
-use super::{FAR, LaneTally, MemoryLanes, Onsets, SurfaceLaw};
+use super::{ContactMemory, FAR, LaneTally, MemoryField, MemoryLanes, Onsets, SurfaceLaw};
 use crate::lanes::{Lane, Mask, Wide};
 use crate::surface::Surface;
 
@@ -168,6 +169,15 @@ impl BoreContact {
             let slip =
                 nx * uy - ny * ux + grip.levers[1] * apart.spin[1] - grip.levers[0] * apart.spin[0];
             let rubbing = law.rub::<S, true>(w, memory, lane, dt, &pressed, slip, tally);
+            if let Some(oil) = law.friction.beside_spring() {
+                // A spring that was stretched on the way has done the work of its mean force, not of the last one:
+                // what it stores and what it loses is what moved it, to the last place.
+                //     P = −½ (R₀ + R) v,   R₀ = −k z₀,   R = −k z
+                let before = w.splat(law.friction.stiffness(0.0)) * memory.stick(w, lane);
+                let now = -(rubbing.force.plus(w.splat(oil), slip));
+                let stretched = pressed.closed.select(now - before, zero);
+                tally.friction_loss = tally.friction_loss.minus(w.splat(0.5) * stretched, slip);
+            }
             grip.rub = rubbing.force;
             grip.drag = rubbing.drag;
             grip.secant = rubbing.secant;
@@ -204,22 +214,38 @@ impl BoreContact {
         [pin_after.select(hole, -pin), pin_after.select(pin, -hole)]
     }
 
-    /// From the centres of the sides before and after along n to where they touch \[m\].
-    pub(crate) fn side_levers(&self, pin_after: bool, depth: f64) -> [f64; 2] {
-        let [pin, hole] = self.levers(depth);
-        // Seen along n, the touching point lies behind the pin's centre if the pin is on the side before.
-        if pin_after {
-            [hole, pin]
-        } else {
-            [-pin, -hole]
-        }
-    }
-
-    /// Stored energy \[J\] of a contact with this gap \[m\].
-    pub(crate) fn energy(&self, gap: f64) -> f64 {
-        self.law.energy(-gap)
+    /// Energy stored in all closed contacts of a memory \[J\].
+    pub(crate) fn stored(&self, memory: &ContactMemory, registers: Registers) -> f64 {
+        registers
+            .dispatch(energies(self, memory))
+            .unwrap_or_else(|| {
+                let gaps = memory.each(MemoryField::Gap);
+                let closed = gaps.filter(|gap| *gap < 0.0);
+                closed.map(|gap| self.law.energy(-gap)).sum()
+            })
     }
 }
+
+kernel!(
+    /// Energy stored in all closed contacts; none where the law has no form of it on lanes.
+    fn energies<'a, S: Simd>(
+        w: Wide<S>,
+        bore: &'a BoreContact,
+        memory: &'a ContactMemory,
+    ) -> Option<f64> {
+        let zero = w.splat(0.0);
+        let mut sum = zero;
+        for gaps in memory.eights(MemoryField::Gap) {
+            for start in (0..gaps.len()).step_by(Wide::<S>::COUNT) {
+                let depth = -w.load(gaps, start);
+                let closed = depth.greater(zero);
+                let energy = bore.lanes.energy(w, depth.max(zero))?;
+                sum += closed.select(energy, zero);
+            }
+        }
+        Some(sum.sum())
+    }
+);
 
 impl BoreContact {
     /// Answer of a contact that neither closes nor opens.

@@ -344,6 +344,12 @@ impl SurfaceLaw {
         slope + share * (other - slope)
     }
 
+    /// Energy stored by contacts without a flank or oil at some depths \[J\]; none for laws that have no form of it on lanes.
+    #[inline(always)]
+    pub(crate) fn energy<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> Option<Lane<S>> {
+        self.elastic.energy(w, depth)
+    }
+
     /// The flank's share where rollers are so far beyond the hollow, as [`Flank::share`](crate::Flank) has it.
     #[inline(always)]
     pub(super) fn share<S: Simd>(&self, w: Wide<S>, beyond: Lane<S>) -> Option<Lane<S>> {
@@ -390,6 +396,21 @@ impl LaneElastic {
                 }
             }
         }
+    }
+
+    /// Energy stored at some depths \[J\]; none for laws that have no form of it on lanes.
+    #[inline(always)]
+    fn energy<S: Simd>(&self, w: Wide<S>, depth: Lane<S>) -> Option<Lane<S>> {
+        let force = self.force::<S, true>(w, depth);
+        // U = g δ/(n + 1)
+        let exponent = match self {
+            Self::Linear(_) => 1.0,
+            Self::Hertz(_) => 1.5,
+            Self::Power(_, n, _) => *n,
+            Self::Stacked(stack) => return Some(stack.energy(w, depth, force)),
+            Self::Logarithm(_) | Self::General(_) => return None,
+        };
+        Some(force * depth * w.splat(1.0 / (exponent + 1.0)))
     }
 
     /// Whether the law is long: see [`SurfaceLaw::is_long`].

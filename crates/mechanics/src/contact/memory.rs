@@ -129,6 +129,13 @@ impl ContactMemory {
         (0..self.len()).map(move |contact| self.get(what, contact))
     }
 
+    /// The same, eight contacts at a time.
+    pub(crate) fn eights(&self, what: MemoryField) -> impl Iterator<Item = &[f64]> {
+        let row = what as usize * LANES;
+        let blocks = self.numbers.chunks_exact(BLOCK);
+        blocks.map(move |block| &block[row..row + LANES])
+    }
+
     /// Takes over one contact of another memory.
     pub(crate) fn carry(&mut self, to: usize, other: &Self, from: usize) {
         let [to, from] = [to, from].map(|contact| place(MemoryField::InverseOnset, contact));

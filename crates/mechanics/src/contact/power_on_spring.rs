@@ -120,6 +120,20 @@ impl PowerOnSpring {
     }
 }
 
+impl PowerOnSpring {
+    /// Energy stored in power and spring by lanes with a force F \[J\].
+    ///
+    /// ```text
+    /// U = F x/(n + 1) + F²/(2 k_s),   x = δ − F/k_s
+    /// ```
+    #[inline(always)]
+    pub(super) fn energy<S: Simd>(&self, w: Wide<S>, depth: Lane<S>, force: Lane<S>) -> Lane<S> {
+        let yielded = force * w.splat(self.compliance);
+        let share = w.splat(1.0 / (self.exponent + 1.0));
+        force * (share * (depth - yielded) + w.splat(0.5) * yielded)
+    }
+}
+
 /// yⁿ for r up to [`QUICK`], if a polynomial is as near as it has to be.
 fn near(exponent: f64) -> Option<Polynomial<TERMS>> {
     let of = |t: f64| {
@@ -217,8 +231,13 @@ mod tests {
                     let lane = w.splat(depth);
                     let force = stacked.force(w, lane);
                     let slope = stacked.slope(w, lane, force);
-                    let expected = [law.elastic_force(depth), law.stiffness(depth)];
-                    for (found, expected) in [force, slope].into_iter().zip(expected) {
+                    let energy = stacked.energy(w, lane, force);
+                    let expected = [
+                        law.elastic_force(depth),
+                        law.stiffness(depth),
+                        law.energy(depth),
+                    ];
+                    for (found, expected) in [force, slope, energy].into_iter().zip(expected) {
                         let found: [f64; LANES] = found.numbers();
                         let error = (found[0] / expected - 1.0).abs();
                         assert!(error < 2e-12, "{stacked:?} at {depth:e}: {error:e}");

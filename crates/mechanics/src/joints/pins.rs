@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Element, JointMates, Mate, Partner, Sides};
 use crate::contact::{BoreContact, ContactMemory, LaneTally, MemoryLanes, RelativeMotion, Tally};
-use crate::lanes::{LANES, Mask, Wide, padded};
+use crate::lanes::{LANES, Lane, Mask, Wide, padded};
 
 /// Forces of the joints, whole lanes.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -55,8 +55,10 @@ pub(crate) struct Pairs {
     present: Array,
     /// The same of the next joint, which after the last one is the first.
     present_next: Array,
-    /// One where the side after has the pin, zero elsewhere, whole lanes.
+    /// One where the side after has the pin, zero elsewhere, whole lanes; the number after the last joint stands for the first again.
     pin_after: Array,
+    /// Bodies among the two sides, likewise.
+    shares: Array,
     /// One where the side after has what carries the roller, zero elsewhere, whole lanes.
     pub(crate) bush_after: Array,
 }
@@ -74,11 +76,25 @@ impl Pairs {
         let present = flags(&|joint| joint.pair.is_some());
         let mut present_next = present.clone();
         present_next[..joints.len()].rotate_left(1);
+        let again = |mut all: Array| {
+            all.resize(padded(joints.len()) + LANES, 0.0);
+            all[joints.len()] = all[0];
+            all
+        };
+        let bodies = |joint: &JointMates| {
+            let mates = joint.pair.into_iter().flatten();
+            mates
+                .filter(|mate| matches!(mate, Mate::Link { .. }))
+                .count() as f64
+        };
         Self {
             count: joints.len(),
+            shares: again(joints.iter().map(bodies).collect()),
             present,
             present_next,
-            pin_after: flags(&|joint| joint.pair.is_some_and(|[_, pin]| pin.is_after())),
+            pin_after: again(flags(&|joint| {
+                joint.pair.is_some_and(|[_, pin]| pin.is_after())
+            })),
             bush_after: flags(&|joint| joint.carrier.is_after()),
         }
     }
@@ -100,6 +116,12 @@ impl Pairs {
     #[inline(always)]
     pub(crate) fn pins_after<S: Simd>(&self, w: Wide<S>, joint: usize) -> Mask<S> {
         w.load(&self.pin_after, joint).greater(w.splat(0.0))
+    }
+
+    /// How many bodies the two sides are, of the joints from one on.
+    #[inline(always)]
+    pub(crate) fn shares<S: Simd>(&self, w: Wide<S>, joint: usize) -> Lane<S> {
+        w.load(&self.shares, joint)
     }
 
     /// Whether the side after a joint has the pin.

@@ -324,7 +324,6 @@ fn compile(particles: &Particles, laid: &ChainAsLaid<'_>, links: &RigidLinks) ->
         .collect();
     let free_rollers = match &links.rollers {
         RollerModel::Free(roller) => {
-            let mut link_of = Vec::new();
             let body = joints
                 .iter()
                 .map(|mates| {
@@ -332,7 +331,6 @@ fn compile(particles: &Particles, laid: &ChainAsLaid<'_>, links: &RigidLinks) ->
                         return None;
                     };
                     links.is_inner(link).then(|| {
-                        link_of.push(link);
                         bodies.push(Body {
                             mass: roller.mass,
                             inertia: roller.inertia,
@@ -345,7 +343,6 @@ fn compile(particles: &Particles, laid: &ChainAsLaid<'_>, links: &RigidLinks) ->
             Some(FreeRollers {
                 bearing: BoreContact::new(&roller.surface, roller.bore_radius, roller.bush_radius),
                 body,
-                link: link_of,
             })
         }
         RollerModel::Lumped { .. } | RollerModel::Bush => None,

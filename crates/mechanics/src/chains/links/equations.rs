@@ -159,7 +159,12 @@ impl<'a> Sum<'a> {
         let along = rows(element.normal, [0.0; 2]);
         let across = rows(tangent, [element.lever_a, element.lever_b]);
         if weights.once {
-            let change = self.change(element.a, across, b);
+            // Of what does not rub no weight depends on it.
+            let change = if element.rub.abs() > 0.0 {
+                self.change(element.a, across, b)
+            } else {
+                0.0
+            };
             let [normal, tangent] =
                 element.step_weights(weights, self.linkage.soft(weights), change);
             self.square(element.a, along.0, along.1, normal);

@@ -13,8 +13,8 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, Weights, kernel};
 
-use super::by_link::ByLink;
-use super::reactions::{Inertia, Reactions, arms, load};
+use super::by_link::{ByLink, load};
+use super::reactions::{Inertia, Reactions, arms};
 use super::{JointState, Linkage, Posture, supplied};
 use crate::End;
 use crate::energy::Flow;

@@ -18,10 +18,10 @@ use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Array, Weights, kernel};
 use pulp::Simd;
 
-use super::by_link::ByLink;
+use super::by_link::{ByLink, load};
 use super::equations::Sum;
 use super::posture::Posture;
-use super::reactions::{Inertia, Reactions, load};
+use super::reactions::{Inertia, Reactions};
 use super::{BorderedBlocks, JointState, Linkage};
 use crate::bodies::GroupBodies;
 use crate::joints::Mate;
@@ -108,7 +108,7 @@ impl JoinedLinks<'_> {
     ) -> bool {
         let linkage = self.linkage;
         let (links, border) = (linkage.series.links, blocks.right_border.len());
-        let inverted = self.reactions.invert(linkage, &blocks.diagonal);
+        let inverted = self.reactions.inverse.invert(linkage, &blocks.diagonal);
         let inertia = Inertia::OfBlocks;
         if !inverted || !self.reactions.factor(linkage, self.posture, inertia) {
             return false;
@@ -166,7 +166,7 @@ impl JoinedLinks<'_> {
     #[inline(always)]
     fn answer<S: Simd>(&mut self, w: Wide<S>, r: &mut ByLink, asked: Option<&[Array; 2]>) {
         let (linkage, posture) = (self.linkage, self.posture);
-        self.reactions.yield_to(w, linkage, r);
+        self.reactions.inverse.yield_to(w, linkage, r);
         self.reactions.set_opening(w, linkage, posture, r);
         if let Some(asked) = asked {
             for (right, asked) in self.reactions.right.iter_mut().zip(asked) {
@@ -178,7 +178,7 @@ impl JoinedLinks<'_> {
         self.reactions.solve(w);
         for link in (0..linkage.series.links).step_by(Wide::<S>::COUNT) {
             let push = self.reactions.load(w, posture, link);
-            let [x, y, turn] = self.reactions.yielding(w, link, push);
+            let [x, y, turn] = self.reactions.inverse.yielding(w, link, push);
             let [r_x, r_y, r_turn] = load(w, r, link + 1);
             (r_x - x).store(&mut r.x, link + 1);
             (r_y - y).store(&mut r.y, link + 1);

@@ -13,11 +13,9 @@ use chaindrive_integrate::Weights;
 
 use super::equations::Sum;
 use super::ideal_joints::HingeTarget;
-use super::impulses::MOST_WHEELS;
 use super::{Joining, JointState, Linkage};
 use crate::bodies::GroupBodies;
 use crate::chains::links::Work;
-use crate::chains::makeup::Makeup;
 
 /// Share of a link's mass that a step need not carry across a contact. *Assumed*.
 const SOFT: f64 = 0.05;
@@ -48,10 +46,7 @@ impl Linkage {
             let share = hinges.share(weights);
             return self.solve_held(bodies, weights, joint_state, x, HingeTarget::Kept(share));
         }
-        // Columns of the rows are counted when they are compiled, and stand in registers. A drive of more bodies than there is room for is
-        // solved by the blocks, whose border grows with it: the same answer to rounding.
-        let few = x.len() - self.coordinates() <= MOST_WHEELS;
-        if weights.once && few {
+        if weights.once {
             return self.step(bodies, weights, joint_state, impulses, x);
         }
         self.eliminate(bodies, weights, joint_state, x)

@@ -1,256 +1,340 @@
-//! (M + c C + k K) x = M b of a step of one solution in the space of the contacts: one unknown a row of J instead of three a body.
+//! (M + c C + k K) x = M b of a step of one solution: one unknown a row of the joints instead of three a link.
 //!
 //! ```text
-//! y = w J x,   x = b − M⁻¹ Jᵀ y     ⇒     (1/w + J M⁻¹ Jᵀ) y = J b
+//! ⎡ D  Wᵀ  Jᵀ  ⎤ ⎡x⎤   ⎡M b⎤      D: blocks of the links, W: their couplings with the wheels, S: the wheels
+//! ⎢ W  S       ⎥ ⎢z⎥ = ⎢M b⎥      J: rows of the joints,   w: their weights,   y = w J x: impulses
+//! ⎣ J     −1/w ⎦ ⎣y⎦   ⎣ 0 ⎦
+//!
+//! P(r) = D⁻¹ (r − Jᵀ y),   (1/w + J D⁻¹ Jᵀ) y = J D⁻¹ r
+//! (S − W P(Wᵀ)) z = M b − W P(M b),   x = P(M b) − P(Wᵀ) z
 //! ```
 //!
-//! w is the weight of a row: [`Element::step_weights`](super::Element::step_weights). Every joint has a row for its normal, and one for
-//! its tangent where pins rub or stiffness counts; joints share a link with their
-//! neighbours only. Whatever else touches a link, or the free rollers on it, is eliminated first: it couples the two joints of
-//! that link, and the wheels. What is left is tridiagonal, with a border of wheels and tensioners, and where there is one row a joint
-//! the last joint of a closed chain. Wheels have a negative diagonal. Quasi-definite: no pivoting is needed.
-//!
-//! # Source
-//! Quasi-definite systems: R. J. Vanderbei, *SIAM J. Optim.* **5**, 1995, 100–113.
+//! w is the weight of a row: [`Element::step_weights`](super::Element::step_weights). Every joint has a row for its normal and one for
+//! its tangent; joints share a link with their neighbours only, so that the matrix over their rows has blocks of two rows beside its diagonal. All other contacts stand in the blocks of the links
+//! and wheels; free rollers are eliminated first.
 
-mod local;
 mod rows;
-mod tridiagonal;
 
-use chaindrive_integrate::{Weights, kernel};
+use chaindrive_integrate::{Array, Weights, kernel};
 use pulp::Simd;
 
-use local::Local;
-use rows::Rows;
-use tridiagonal::{Tridiagonal, UnknownPlace};
+use rows::{RowLane, Rows};
 
-use super::by_link::ByLink;
-use super::reactions::load;
-use super::{Joining, JointState, Linkage};
+use super::by_link::{ByLink, load};
+use super::equations::Sum;
+use super::inverse_blocks::InverseBlocks;
+use super::reactions::Sections;
+use super::{BorderedBlocks, Joining, JointState, Linkage};
 use crate::bodies::GroupBodies;
-use crate::chains::makeup::Makeup;
 use crate::contact::BoreContact;
-use crate::lanes::Wide;
+use crate::lanes::{LANES, Lane, Wide, padded};
 
 /// The rows of one step and their factors.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Impulses {
     /// Normals of the joints, and tangents.
     rows: [Rows; 2],
-    /// b of the links, then what changes of it.
+    /// b of the links.
     known: ByLink,
-    joints: Tridiagonal,
-    local: Local,
+    /// D⁻¹
+    inverse: InverseBlocks,
+    /// Entries (0, 0), (1, 0), (1, 1) of the joints' own blocks, whole lanes.
+    own: [Array; 3],
+    /// Entries (0, 0), (0, 1), (1, 0), (1, 1) of the blocks (joint + 1, joint).
+    coupling: [Array; 4],
+    sections: Sections,
+    /// Of every unknown of a wheel, and of the right-hand side after them.
+    columns: Vec<Column>,
+    /// W P(Wᵀ), and W P(M b) in the last column, row by row.
+    products: Vec<f64>,
+    /// Whether there are factors.
+    sound: bool,
 }
 
-/// Unknowns of wheels, shafts and tensioners that this elimination has room for: 24 columns less two joints of two rows and the
-/// right-hand side. Beyond, [`Linkage::implicit_step`] asks the blocks of the bodies.
-pub(super) const MOST_WHEELS: usize = 19;
+/// A load on the links, and how they answer.
+#[derive(Clone, Debug, Default)]
+struct Column {
+    /// r
+    load: ByLink,
+    /// D⁻¹ r, then P(r).
+    answer: ByLink,
+    /// J D⁻¹ r, then y, by joint.
+    impulses: [Array; 2],
+}
 
 impl Linkage {
-    /// x ← (M + c C + k K)⁻¹ M x; false if a pivot vanishes.
+    /// x ← (M + c C + k K)⁻¹ M x; false if there is none.
     pub(crate) fn step(
         &self,
         bodies: GroupBodies<'_>,
         weights: Weights,
-        joint_state: &JointState,
+        joint_state: &mut JointState,
         work: &mut Impulses,
         x: &mut [f64],
     ) -> bool {
         let Joining::Clearance(bearing) = &self.joining else {
             return false;
         };
-        let wheels = x.len() - self.coordinates();
-        let step = Step {
-            linkage: self,
-            bearing,
-            bodies,
-            weights,
-            joint_state,
-        };
-        // Around a link there are its two joints, the wheels, and the right-hand side; beside a joint only the one that closes the
-        // chain instead of two. Columns that are always empty cost as much as others: with friction and one wheel, some 30 % of the step.
-        match (bearing.rubs() || weights.stiffness > 0.0, wheels) {
-            (false, ..=1) => work.solve::<1, 4, 4>(step, x),
-            (false, 2..=5) => work.solve::<1, 8, 8>(step, x),
-            (true, ..=1) => work.solve::<2, 8, 4>(step, x),
-            (true, 2..=3) => work.solve::<2, 8, 8>(step, x),
-            (_, ..=MOST_WHEELS) => work.solve::<2, 24, 24>(step, x),
-            _ => false,
+        let mut equations = std::mem::take(&mut joint_state.equations);
+        let links = self.series.links;
+        let mut sum = Sum::new(self, &mut equations, links, x);
+        sum.add_masses(bodies, weights, x);
+        for element in &joint_state.elements {
+            sum.add(element, &joint_state.mounts, weights, x);
         }
+        let sound = sum.eliminate_rollers() && work.inverse.invert(self, &sum.blocks.diagonal);
+        if sound {
+            // What stands beside the blocks, taken apart for lanes.
+            let blocks = &mut *sum.blocks;
+            let border = blocks.right_border.len();
+            let b = x[..3 * links].as_chunks::<3>().0;
+            work.known.read(self, b.iter().copied());
+            work.columns.resize_with(border + 1, Column::default);
+            for (j, column) in work.columns[..border].iter_mut().enumerate() {
+                let beside = blocks.beside.chunks_exact(border).map(|row| row[j]);
+                column.load.read(self, beside.map(|r| [r.x, r.y, r.z]));
+            }
+            let right = blocks.right.iter().map(|r| [r.x, r.y, r.z]);
+            work.columns[border].load.read(self, right);
+            let step = Step {
+                linkage: self,
+                bearing,
+                weights,
+                joint_state,
+            };
+            self.series.registers.dispatch(answers(work, step));
+        }
+        let solved = sound && work.find(sum.blocks, links);
+        if solved {
+            sum.read(x);
+        }
+        joint_state.equations = equations;
+        solved
     }
 }
 
 /// Inputs of the solution of one step.
 #[derive(Clone, Copy)]
-pub(super) struct Step<'a> {
-    pub(super) linkage: &'a Linkage,
-    pub(super) bearing: &'a BoreContact,
-    pub(super) bodies: GroupBodies<'a>,
-    pub(super) weights: Weights,
-    pub(super) joint_state: &'a JointState,
-}
-
-impl Impulses {
-    /// With R rows a joint, and room for C columns around a link and B beside the joints.
-    pub(super) fn solve<const R: usize, const C: usize, const B: usize>(
-        &mut self,
-        step: Step<'_>,
-        x: &mut [f64],
-    ) -> bool {
-        let registers = step.linkage.series.registers;
-        registers.dispatch(solution::<R, C, B>(self, step, x))
-    }
-
-    #[inline(always)]
-    fn solve_on<S: Simd, const R: usize, const C: usize, const B: usize>(
-        &mut self,
-        w: Wide<S>,
-        step: Step<'_>,
-        x: &mut [f64],
-    ) -> bool {
-        let Step {
-            linkage,
-            bearing,
-            bodies,
-            weights,
-            joint_state,
-        } = step;
-        // Rows of J at the joints, from what the links do under the forces alone, b.
-        let wheels = x.len() - linkage.coordinates();
-        let b = x[..3 * linkage.series.links].as_chunks::<3>().0;
-        self.known.read(linkage, b.iter().copied());
-        self.rows[0].set_normals(w, joint_state, weights);
-        if R == 2 {
-            self.rows[1].set_tangents(w, linkage, bearing, joint_state, &self.known, weights);
-        }
-        // The matrix over joints and wheels: joints on lanes, wheels one by one, and all else that touches links eliminated into it.
-        self.joints.clear::<R, B>(linkage, wheels);
-        self.fill::<S, R, B>(w, linkage);
-        self.fill_wheels::<R, B>(linkage, bodies, weights, x);
-        self.local.gather(linkage, weights, joint_state, x);
-        let condensed = self
-            .local
-            .condense::<R, C, B>(linkage, &self.rows, &mut self.joints, x);
-        if !condensed || !self.joints.factor::<S, R, B>(w, linkage) {
-            return false;
-        }
-        // Back from the impulses to the velocities: joints, contacts, wheels.
-        self.joints.substitute::<R, B>(linkage);
-        self.apply::<S, R>(w, linkage, x);
-        self.local.apply::<R, C>(linkage, &self.joints, x);
-        x[linkage.coordinates()..].copy_from_slice(self.joints.wheels(wheels));
-        true
-    }
-
-    /// The rows of the joints among themselves, and J b.
-    #[inline(always)]
-    fn fill<S: Simd, const R: usize, const B: usize>(&mut self, w: Wide<S>, linkage: &Linkage) {
-        let shapes = &linkage.shapes;
-        let rows = &self.rows;
-        let one = w.splat(1.0);
-        let zero = w.splat(0.0);
-        let joints = linkage.joints.len();
-        for start in (0..joints).step_by(Wide::<S>::COUNT) {
-            let [before, after] = [start, start + 1];
-            // The links before and after the joint, and for the coupling with the next joint the latter.
-            let mass = [before, after].map(|at| w.load(&shapes.mobility, at));
-            let inertia = [before, after].map(|at| w.load(&shapes.turning, at));
-            let b = [load(w, &self.known, before), load(w, &self.known, after)];
-            // Entries of 1/w + J M⁻¹ Jᵀ: of a joint with itself, through the links before and after it, and with the next, through the link
-            // between them.
-            for p in 0..R {
-                let row = rows[p].load(w, start);
-                let next = rows[p].load(w, start + 1);
-                for o in 0..R {
-                    let other = rows[o].load(w, start);
-                    if o <= p {
-                        let mut value = (mass[0] + mass[1]) * row.dot(&other)
-                            + inertia[0] * row.turn_before * other.turn_before
-                            + inertia[1] * row.turn_after * other.turn_after;
-                        if o == p {
-                            let weight = w.load(&rows[p].weight, start);
-                            let present = weight.greater(zero);
-                            let inverse = present.select(weight, one).recip();
-                            value += inverse;
-                        }
-                        value.store(self.joints.own(p, o), start);
-                    }
-                    let value = -(mass[1] * next.dot(&other)
-                        + inertia[1] * next.turn_before * other.turn_after);
-                    value.store(self.joints.coupling(p, o), start);
-                }
-                // J b: how the sides of the joint part along the row.
-                let right = row.x * (b[1][0] - b[0][0])
-                    + row.y * (b[1][1] - b[0][1])
-                    + row.turn_after * b[1][2]
-                    - row.turn_before * b[0][2];
-                right.store(self.joints.right(p), start);
-            }
-        }
-        self.joints.take_in::<R, B>();
-    }
-
-    #[inline(always)]
-    fn fill_wheels<const R: usize, const B: usize>(
-        &mut self,
-        linkage: &Linkage,
-        bodies: GroupBodies<'_>,
-        weights: Weights,
-        b: &[f64],
-    ) {
-        // Wheels stand in the border, with a negative sign: their unknowns are velocities, not impulses.
-        let first = self.joints.first_wheel();
-        for (j, &inertia) in bodies.inertias().iter().enumerate() {
-            let place = UnknownPlace::Border(first + j);
-            self.joints.add::<R, B>(place, place, -inertia);
-            self.joints
-                .add_right::<R, B>(place, -inertia * b[linkage.coordinates() + j]);
-        }
-        bodies.each_own(weights, |places, weighted| {
-            let [i, j] = places.map(|place| UnknownPlace::Border(first + place));
-            // Both halves are one.
-            if places[0] >= places[1] {
-                self.joints.add::<R, B>(i, j, -weighted);
-            }
-        });
-    }
-
-    /// x ← b − M⁻¹ Jᵀ y of the joints.
-    #[inline(always)]
-    fn apply<S: Simd, const R: usize>(&mut self, w: Wide<S>, linkage: &Linkage, x: &mut [f64]) {
-        let shapes = &linkage.shapes;
-        for start in (0..linkage.series.links).step_by(Wide::<S>::COUNT) {
-            // A link is pushed by the joint at its beginning, and back by the one at its end.
-            let mut impulse = [w.splat(0.0); 3];
-            for p in 0..R {
-                let (row, next) = (self.rows[p].load(w, start), self.rows[p].load(w, start + 1));
-                let found = self.joints.found(p);
-                let (y, z) = (w.load(found, start), w.load(found, start + 1));
-                impulse[0] += row.x * y - next.x * z;
-                impulse[1] += row.y * y - next.y * z;
-                impulse[2] += row.turn_after * y - next.turn_before * z;
-            }
-            let (mass, inertia) = (
-                w.load(&shapes.mobility, start + 1),
-                w.load(&shapes.turning, start + 1),
-            );
-            (impulse[0] * mass).store(&mut self.known.x, start + 1);
-            (impulse[1] * mass).store(&mut self.known.y, start + 1);
-            (impulse[2] * inertia).store(&mut self.known.turn, start + 1);
-        }
-        self.known.subtract_from(&mut x[..3 * linkage.series.links]);
-    }
+struct Step<'a> {
+    linkage: &'a Linkage,
+    bearing: &'a BoreContact,
+    weights: Weights,
+    joint_state: &'a JointState,
 }
 
 kernel!(
-    /// The solution; false if the equations are singular.
-    fn solution<'a, const R: usize, const C: usize, const B: usize, S: Simd>(
-        w: Wide<S>,
-        work: &'a mut Impulses,
-        step: Step<'a>,
-        x: &'a mut [f64],
-    ) -> bool {
-        work.solve_on::<S, R, C, B>(w, step, x)
+    /// The answers of the links to all loads, and the products of loads and answers; the factors, where they are singular, are left without.
+    fn answers<'a, S: Simd>(w: Wide<S>, work: &'a mut Impulses, step: Step<'a>) {
+        let Step {
+            linkage,
+            bearing,
+            weights,
+            joint_state,
+        } = step;
+        work.resize(linkage);
+        work.rows[0].set_normals(w, joint_state, weights);
+        work.rows[1].set_tangents(w, linkage, bearing, joint_state, &work.known, weights);
+        work.fill(w, linkage);
+        // Quasi-definite: whatever is positive will do, since the rows of one joint may differ by any power of ten.
+        let (joints, closed) = (linkage.joints.len(), linkage.series.is_closed());
+        work.sections.lay_out(joints, closed, 0.0);
+        let [xx, yx, yy] = &work.own;
+        work.sections
+            .take_in([&xx[..], &yx[..], &yy[..]], &work.coupling);
+        work.sound = work.sections.factor(w);
+        let mut columns = std::mem::take(&mut work.columns);
+        for column in &mut columns {
+            work.answer(w, linkage, column);
+        }
+        let border = columns.len() - 1;
+        work.products.resize(border * columns.len(), 0.0);
+        for (j, row) in work.products.chunks_exact_mut(columns.len()).enumerate() {
+            let load = &columns[j].load;
+            for (product, column) in row.iter_mut().zip(&columns) {
+                *product = times(w, linkage, load, &column.answer);
+            }
+        }
+        work.columns = columns;
     }
 );
+
+impl Impulses {
+    fn resize(&mut self, linkage: &Linkage) {
+        let lanes = padded(linkage.joints.len());
+        for values in self.own.iter_mut().chain(&mut self.coupling) {
+            values.resize(lanes, 0.0);
+        }
+        for column in &mut self.columns {
+            for values in &mut column.impulses {
+                values.resize(lanes + LANES, 0.0);
+            }
+        }
+    }
+
+    /// The rows of the joints among themselves: 1/w + J D⁻¹ Jᵀ.
+    #[inline(always)]
+    fn fill<S: Simd>(&mut self, w: Wide<S>, linkage: &Linkage) {
+        let (zero, one) = (w.splat(0.0), w.splat(1.0));
+        let rows = &self.rows;
+        for start in (0..linkage.joints.len()).step_by(Wide::<S>::COUNT) {
+            // How the links before and after the joints give way to impulses along their rows.
+            let (before, after) = (self.inverse.at(w, start), self.inverse.at(w, start + 1));
+            let (normal, tangent) = (rows[0].load(w, start), rows[1].load(w, start));
+            let along = given(&before, &after, normal);
+            let across = given(&before, &after, tangent);
+            let compliance = |rows: &Rows| {
+                let weight = w.load(&rows.weight, start);
+                weight.greater(zero).select(weight, one).recip()
+            };
+            let [xx, yx, yy] = &mut self.own;
+            (back(normal, &along) + compliance(&rows[0])).store(xx, start);
+            back(tangent, &along).store(yx, start);
+            (back(tangent, &across) + compliance(&rows[1])).store(yy, start);
+            // The link after a joint hands on what the next joint does.
+            let next = (rows[0].load(w, start + 1), rows[1].load(w, start + 1));
+            let [nn, nt, tn, tt] = &mut self.coupling;
+            handed_on(next.0, &along[1]).store(nn, start);
+            handed_on(next.0, &across[1]).store(nt, start);
+            handed_on(next.1, &along[1]).store(tn, start);
+            handed_on(next.1, &across[1]).store(tt, start);
+        }
+    }
+
+    /// P(r) of a column.
+    #[inline(always)]
+    fn answer<S: Simd>(&mut self, w: Wide<S>, linkage: &Linkage, column: &mut Column) {
+        let Column {
+            load: given,
+            answer,
+            impulses,
+        } = column;
+        answer.resize(linkage);
+        for link in (0..linkage.series.links).step_by(Wide::<S>::COUNT) {
+            let moved = self.inverse.yielding(w, link, load(w, given, link + 1));
+            answer.put(link, moved);
+        }
+        answer.close(linkage);
+        // J x: how the sides of the joints part along the rows.
+        for start in (0..linkage.joints.len()).step_by(Wide::<S>::COUNT) {
+            let (before, after) = (load(w, answer, start), load(w, answer, start + 1));
+            let parting = [after[0] - before[0], after[1] - before[1]];
+            for (rows, to) in self.rows.iter().zip(&mut *impulses) {
+                let row = rows.load(w, start);
+                let along = (row.x * parting[0]).plus(row.y, parting[1]);
+                let along = along.plus(row.turn_after, after[2]);
+                along.minus(row.turn_before, before[2]).store(to, start);
+            }
+        }
+        self.sections.solve(w, impulses);
+        // A link is pushed by the joint at its beginning, and back by the one at its end.
+        let [along, across] = impulses;
+        for link in (0..linkage.series.links).step_by(Wide::<S>::COUNT) {
+            // Row by row and not in a loop, whose sums would be put down in memory between its turns.
+            let normal = pushed(w, &self.rows[0], along, link);
+            let tangent = pushed(w, &self.rows[1], across, link);
+            let push = [
+                normal[0] + tangent[0],
+                normal[1] + tangent[1],
+                normal[2] + tangent[2],
+            ];
+            let held = self.inverse.yielding(w, link, push);
+            let free = load(w, answer, link + 1);
+            answer.put(
+                link,
+                [free[0] - held[0], free[1] - held[1], free[2] - held[2]],
+            );
+        }
+    }
+
+    /// The unknowns of the wheels, and the links in the place of their right-hand sides; false if there are none.
+    fn find(&mut self, blocks: &mut BorderedBlocks, links: usize) -> bool {
+        let Some((whole, columns)) = self.columns.split_last_mut() else {
+            return false;
+        };
+        for (j, products) in self.products.chunks_exact(columns.len() + 1).enumerate() {
+            blocks.right_border[j] -= products[columns.len()];
+            for (k, product) in products[..=j].iter().enumerate() {
+                blocks.corner[(j, k)] -= product;
+            }
+        }
+        if !self.sound || !blocks.solve_border() {
+            return false;
+        }
+        for (column, z) in columns.iter().zip(blocks.right_border.iter()) {
+            whole.answer.subtract(&column.answer, *z);
+        }
+        for (x, found) in blocks.right.iter_mut().zip(whole.answer.each(links)) {
+            *x = found.into();
+        }
+        true
+    }
+}
+
+/// What impulses along one row of the joints do to the links from one on.
+#[inline(always)]
+fn pushed<S: Simd>(w: Wide<S>, rows: &Rows, impulses: &[f64], link: usize) -> [Lane<S>; 3] {
+    let (row, next) = (rows.load(w, link), rows.load(w, link + 1));
+    let (y, z) = (w.load(impulses, link), w.load(impulses, link + 1));
+    [
+        (row.x * y).minus(next.x, z),
+        (row.y * y).minus(next.y, z),
+        (row.turn_after * y).minus(next.turn_before, z),
+    ]
+}
+
+/// The product of a block and three numbers of each link.
+#[inline(always)]
+fn yielded<S: Simd>(
+    [xx, yx, yy, tx, ty, tt]: &[Lane<S>; 6],
+    [x, y, turn]: [Lane<S>; 3],
+) -> [Lane<S>; 3] {
+    [
+        (*xx * x).plus(*yx, y).plus(*tx, turn),
+        (*yx * x).plus(*yy, y).plus(*ty, turn),
+        (*tx * x).plus(*ty, y).plus(*tt, turn),
+    ]
+}
+
+#[inline(always)]
+fn dot<S: Simd>([x, y, turn]: [Lane<S>; 3], other: &[Lane<S>; 3]) -> Lane<S> {
+    (x * other[0]).plus(y, other[1]).plus(turn, other[2])
+}
+
+/// How the links before and after the joints give way to impulses along a row.
+#[inline(always)]
+fn given<S: Simd>(
+    before: &[Lane<S>; 6],
+    after: &[Lane<S>; 6],
+    row: RowLane<S>,
+) -> [[Lane<S>; 3]; 2] {
+    [
+        yielded(before, [row.x, row.y, row.turn_before]),
+        yielded(after, [row.x, row.y, row.turn_after]),
+    ]
+}
+
+/// How the next joints part along a row, under what the links after these ones do.
+#[inline(always)]
+fn handed_on<S: Simd>(next: RowLane<S>, after: &[Lane<S>; 3]) -> Lane<S> {
+    -dot([next.x, next.y, next.turn_before], after)
+}
+
+/// How the sides of joints part along a row, under what the links before and after do.
+#[inline(always)]
+fn back<S: Simd>(row: RowLane<S>, [before, after]: &[[Lane<S>; 3]; 2]) -> Lane<S> {
+    let first = dot([row.x, row.y, row.turn_before], before);
+    first + dot([row.x, row.y, row.turn_after], after)
+}
+
+/// Sum of the products of two triples over the links.
+#[inline(always)]
+fn times<S: Simd>(w: Wide<S>, linkage: &Linkage, one: &ByLink, other: &ByLink) -> f64 {
+    let mut sum = w.splat(0.0);
+    for link in (0..linkage.series.links).step_by(Wide::<S>::COUNT) {
+        // After the last link of a closed chain the first stands once more.
+        let own = w.first(linkage.series.links - link);
+        let product = dot(load(w, one, link + 1), &load(w, other, link + 1));
+        sum += own.select(product, w.splat(0.0));
+    }
+    sum.sum()
+}

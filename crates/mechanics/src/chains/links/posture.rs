@@ -242,7 +242,9 @@ impl Linkage {
 
     /// The body that bears the circle at a joint that runs on the teeth, and the circle's centre from its centre of mass \[m\].
     pub(super) fn bearer(&self, joint: usize, posture: &Posture) -> (Option<usize>, Vector) {
-        let joint = joint % self.joints.len();
+        // After the last joint of a closed chain the first ones are repeated.
+        let count = self.joints.len();
+        let joint = if joint < count { joint } else { joint % count };
         if let Some(body) = self.free_rollers.as_ref().and_then(|free| free.body[joint]) {
             return (Some(body), Vector::zeros());
         }

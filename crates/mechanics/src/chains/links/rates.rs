@@ -4,11 +4,12 @@ use chaindrive_geometry::Vector;
 use nalgebra::Vector3;
 use pulp::Simd;
 
+use super::stiffness_sums::Kind;
 use super::{Joining, JointState, Linkage, Posture};
 use crate::bodies::Surroundings;
 use crate::chains::links::Work;
 use crate::contact::{OfPins, PinAccelerations, PlatePins};
-use crate::joints::{Element, Joints, Partner, cross, turned};
+use crate::joints::{Element, Joints, Partner, cross};
 use crate::lanes::{Lane, Wide};
 use crate::seam::Rates;
 
@@ -36,51 +37,46 @@ impl Linkage {
     pub(super) fn stiffest_mode(&self, around: Surroundings<'_>, work: &mut Work) -> Rates {
         let joint_state = &mut work.joint_state;
         let mut sums = std::mem::take(&mut joint_state.sums);
-        sums.clear();
-        sums.resize(self.bodies.len(), [SymmetricMatrix::default(); 3]);
-        self.add_joints(joint_state, &mut sums);
+        let bearing = match &self.joining {
+            Joining::Clearance(bearing) => Some(&**bearing),
+            Joining::Hinges(_) => None,
+        };
+        sums.begin(self, joint_state, bearing);
         for element in &joint_state.elements {
-            let share = match element.b {
-                Partner::Ground => 1.0,
-                Partner::Body(_) => 2.0,
-                Partner::Mount(_) => WHEEL_SHARE,
+            let (share, other) = match element.b {
+                Partner::Ground => (1.0, None),
+                Partner::Body(body) => (2.0, Some(body)),
+                Partner::Mount(_) => (WHEEL_SHARE, None),
             };
-            let [sides, [n, t]] = [
-                [element.arm_a, element.arm_b],
-                [element.normal, element.tangent()],
-            ];
-            let other = match element.b {
-                Partner::Body(body) => Some(body),
-                Partner::Ground | Partner::Mount(_) => None,
-            };
+            let [n, t] = [element.normal, element.tangent()];
             // Each contact counts on the bodies of both sides, by the share that bounds what the two do together.
             for (body, arm, lever) in [
-                (element.a, sides[0], element.lever_a),
-                (other, sides[1], element.lever_b),
+                (element.a, element.arm_a, element.lever_a),
+                (other, element.arm_b, element.lever_b),
             ] {
                 let Some(body) = body else { continue };
-                let along = self.scaled_row(body, n, cross(arm, n));
-                let pivoting = self.scaled_row(body, t, cross(arm, t));
-                let across = self.scaled_row(body, t, cross(arm, t) + lever);
-                let sum = &mut sums[body];
-                add_square(&mut sum[0], along, share * element.stiffness);
-                add_square(&mut sum[0], pivoting, share * element.across.max(0.0));
-                add_square(&mut sum[1], along, share * element.damping);
-                add_square(&mut sum[1], across, share * element.drag);
+                let (along, pivoting) = ((n, cross(arm, n)), (t, cross(arm, t)));
+                let across = (t, cross(arm, t) + lever);
+                sums.add(
+                    self,
+                    Kind::Stiffness,
+                    body,
+                    along,
+                    share * element.stiffness,
+                );
+                sums.add(
+                    self,
+                    Kind::Stiffness,
+                    body,
+                    pivoting,
+                    share * element.across.max(0.0),
+                );
+                sums.add(self, Kind::Damping, body, along, share * element.damping);
+                sums.add(self, Kind::Damping, body, across, share * element.drag);
             }
         }
-        let sticks = self.sticks();
         // The stiffest body: with what sticks held by springs, and with all of it sliding.
-        let [mut squared, mut damping, mut sliding] =
-            sums.iter().fold([0.0_f64; 3], |[k, d, s], sum| {
-                let own = largest(&sum[0]);
-                let stuck = if sticks {
-                    largest(&std::array::from_fn(|i| sum[0][i] + sum[2][i]))
-                } else {
-                    own
-                };
-                [k.max(stuck), d.max(largest(&sum[1])), s.max(own)]
-            });
+        let [mut sliding, mut damping, mut squared] = sums.largest(self);
         joint_state.sums = sums;
         // What is beside the contacts: joints that close gently, wheels, torques in joints, drag, and ideal joints under tension.
         let mut stiffest = self.resting();
@@ -108,14 +104,6 @@ impl Linkage {
             carried: sliding / (reach * reach),
             predicted: damping.max(drawing),
             ..Rates::of([squared, damping])
-        }
-    }
-
-    /// Whether springs hold what sticks in joints with play.
-    fn sticks(&self) -> bool {
-        match &self.joining {
-            Joining::Hinges(_) => false,
-            Joining::Clearance(bearing) => bearing.lanes.friction.beside_spring().is_some(),
         }
     }
 
@@ -166,98 +154,6 @@ impl Linkage {
         }
         squared
     }
-
-    /// Pins in bushes, straight from their arrays.
-    fn add_joints(&self, joint_state: &JointState, sums: &mut [[SymmetricMatrix; 3]]) {
-        let Joining::Clearance(bearing) = &self.joining else {
-            return;
-        };
-        let (pins, posture) = (&joint_state.pins, &joint_state.posture);
-        let friction = &bearing.lanes.friction;
-        for joint in 0..self.joints.len() {
-            let stiffness = pins.stiffness[joint];
-            // What a spring resists within the step is in its stiffness already.
-            let (drag, spring) = match friction.beside_spring() {
-                Some(dashpot) if stiffness > 0.0 => {
-                    (dashpot, friction.stiffness(pins.force[joint]))
-                }
-                Some(_) => (0.0, 0.0),
-                None => (pins.drag[joint], 0.0),
-            };
-            if stiffness <= 0.0 && drag <= 0.0 {
-                continue;
-            }
-            let n = pins.normal(joint);
-            let t = turned(n);
-            let before = match joint {
-                0 => self.series.is_closed().then(|| self.series.links - 1),
-                _ => Some(joint - 1),
-            };
-            let after = (joint < self.series.links).then_some(joint);
-            let share = if before.is_some() && after.is_some() {
-                2.0
-            } else {
-                1.0
-            };
-            let depth = -pins.gap[joint];
-            let levers = bearing.side_levers(self.pairs.pin_after(joint), depth);
-            for (body, side, lever) in [
-                (before, &posture.before, levers[0]),
-                (after, &posture.after, levers[1]),
-            ] {
-                let Some(body) = body else { continue };
-                let arm = Vector::new(side.arm_x[joint], side.arm_y[joint]);
-                let along = self.scaled_row(body, n, cross(arm, n));
-                let pivoting = self.scaled_row(body, t, cross(arm, t));
-                let sum = &mut sums[body];
-                add_square(&mut sum[0], along, share * stiffness);
-                add_square(&mut sum[0], pivoting, share * pins.across[joint]);
-                add_square(&mut sum[1], along, share * pins.damping[joint]);
-                if drag > 0.0 || spring > 0.0 {
-                    let across = self.scaled_row(body, t, cross(arm, t) + lever);
-                    add_square(&mut sum[2], across, share * spring);
-                    add_square(&mut sum[1], across, share * drag);
-                }
-            }
-        }
-    }
-
-    /// A row of J M^(−½).
-    #[inline]
-    fn scaled_row(&self, body: usize, direction: Vector, turn: f64) -> Vector3<f64> {
-        let [root, turning] = self.shapes.roots[body];
-        Vector3::new(direction.x * root, direction.y * root, turn * turning)
-    }
-}
-
-/// A symmetric matrix of three rows: diagonal, then entries (1, 0), (2, 0), (2, 1).
-pub(super) type SymmetricMatrix = [f64; 6];
-
-/// S += w r rᵀ
-#[inline]
-fn add_square(sum: &mut SymmetricMatrix, row: Vector3<f64>, weight: f64) {
-    let scaled = row * weight;
-    for k in 0..3 {
-        sum[k] += row[k] * scaled[k];
-    }
-    sum[3] += row[1] * scaled[0];
-    sum[4] += row[2] * scaled[0];
-    sum[5] += row[2] * scaled[1];
-}
-
-/// Largest eigenvalue of a positive semidefinite matrix, from above.
-///
-/// ```text
-/// m = tr/3,  p² = |S − m|²/6:   λ ≤ m + 2 p
-/// ```
-fn largest(matrix: &SymmetricMatrix) -> f64 {
-    let [x, y, z, yx, zx, zy] = matrix;
-    let mean = (x + y + z) / 3.0;
-    let off = yx * yx + zx * zx + zy * zy;
-    let diagonal = [x, y, z].map(|value| (value - mean) * (value - mean));
-    // Every entry beside the diagonal counts twice.
-    let squared = diagonal.iter().sum::<f64>() + 2.0 * off;
-    mean + 2.0 * (squared / 6.0).sqrt()
 }
 
 impl JointState {

@@ -13,10 +13,10 @@ mod sections;
 
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Array, kernel};
-use nalgebra::Matrix3;
 use pulp::Simd;
 
-use super::by_link::ByLink;
+use super::by_link::{ByLink, load};
+use super::inverse_blocks::InverseBlocks;
 use super::posture::Posture;
 use super::{Linkage, Shapes};
 use crate::lanes::{LANES, Lane, Wide, padded};
@@ -37,8 +37,8 @@ pub(crate) struct Reactions {
     sections: Sections,
     /// Whether there are forces that keep the joints together.
     sound: bool,
-    /// Inverses of the blocks of A, as [`ByLink`] has its numbers: entries (0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2).
-    inverse: [Array; 6],
+    /// Inverses of the blocks of A.
+    pub(super) inverse: InverseBlocks,
     /// r, then λ, by joint; after the last joint of a closed chain comes the first once more.
     pub(super) right: [Array; 2],
 }
@@ -61,36 +61,6 @@ enum InverseInertia<S: Simd> {
 }
 
 impl Reactions {
-    /// Inverts the blocks of the links; false if one is singular.
-    pub(super) fn invert(&mut self, linkage: &Linkage, blocks: &[Matrix3<f64>]) -> bool {
-        for values in &mut self.inverse {
-            values.resize(linkage.shapes.lanes(), 0.0);
-        }
-        let [xx, yx, yy, tx, ty, tt] = &mut self.inverse;
-        for (i, block) in blocks.iter().enumerate() {
-            let place = i + 1;
-            [xx[place], yx[place], yy[place]] = [block[(0, 0)], block[(1, 0)], block[(1, 1)]];
-            [tx[place], ty[place], tt[place]] = [block[(2, 0)], block[(2, 1)], block[(2, 2)]];
-        }
-        let registers = linkage.series.registers;
-        let sound = registers.dispatch(inverted(&mut self.inverse, linkage));
-        for values in &mut self.inverse {
-            values[0] = if linkage.series.is_closed() {
-                values[linkage.series.links]
-            } else {
-                0.0
-            };
-            let first = if linkage.series.is_closed() {
-                values[1]
-            } else {
-                0.0
-            };
-            values[linkage.series.links + 1..].fill(0.0);
-            values[linkage.series.links + 1] = first;
-        }
-        sound
-    }
-
     /// Sets up J A⁻¹ Jᵀ and factors it; false if it is singular.
     pub(super) fn factor(
         &mut self,
@@ -175,64 +145,7 @@ impl Reactions {
             (ax * first_y - ay * first_x) - (bx * second_y - by * second_x),
         ]
     }
-
-    /// r ← A⁻¹ r of the blocks that were inverted last.
-    #[inline(always)]
-    pub(super) fn yield_to<S: Simd>(&self, w: Wide<S>, linkage: &Linkage, r: &mut ByLink) {
-        for link in (0..linkage.series.links).step_by(Wide::<S>::COUNT) {
-            let [x, y, turn] = self.yielding(w, link, load(w, r, link + 1));
-            x.store(&mut r.x, link + 1);
-            y.store(&mut r.y, link + 1);
-            turn.store(&mut r.turn, link + 1);
-        }
-        r.close(linkage);
-    }
-
-    /// A⁻¹ of a load on the links from one on.
-    #[inline(always)]
-    pub(super) fn yielding<S: Simd>(
-        &self,
-        w: Wide<S>,
-        link: usize,
-        [x, y, turn]: [Lane<S>; 3],
-    ) -> [Lane<S>; 3] {
-        let [xx, yx, yy, tx, ty, tt] = blocks(w, &self.inverse, link + 1);
-        [
-            xx * x + yx * y + tx * turn,
-            yx * x + yy * y + ty * turn,
-            tx * x + ty * y + tt * turn,
-        ]
-    }
 }
-
-kernel!(
-    /// Inverses of the blocks, in their place; false if one is singular.
-    fn inverted<'a, S: Simd>(
-        w: Wide<S>,
-        inverse: &'a mut [Array; 6],
-        linkage: &'a Linkage,
-    ) -> bool {
-        let links = linkage.series.links;
-        let one = w.splat(1.0);
-        let mut least = one;
-        for link in (0..links).step_by(Wide::<S>::COUNT) {
-            // [a b c; b d e; c e f]
-            let [a, b, d, c, e, f] = blocks(w, inverse, link + 1);
-            // The adjoint of a symmetric block over its determinant
-            let [xx, yx, tx] = [d * f - e * e, c * e - b * f, b * e - c * d];
-            let determinant = a * xx + b * yx + c * tx;
-            // Lanes beyond the last link have no block: one stands for their determinant.
-            let within = w.first(links - link);
-            least = least.min(within.select(determinant.abs(), one));
-            let scale = within.select(determinant, one).recip();
-            let found = [xx, yx, a * f - c * c, tx, b * c - a * e, a * d - b * b];
-            for (found, inverse) in found.into_iter().zip(&mut *inverse) {
-                (found * scale).store(inverse, link + 1);
-            }
-        }
-        least.smallest() > 0.0
-    }
-);
 
 kernel!(
     /// The blocks of the joints and their factors; false if they are singular.
@@ -277,8 +190,8 @@ impl Reactions {
                 )
             } else {
                 (
-                    InverseInertia::Held(blocks(w, &self.inverse, start)),
-                    InverseInertia::Held(blocks(w, &self.inverse, start + 1)),
+                    InverseInertia::Held(self.inverse.at(w, start)),
+                    InverseInertia::Held(self.inverse.at(w, start + 1)),
                 )
             };
             // At a joint both links give way; the link after it hands on what the next joint does.
@@ -342,25 +255,6 @@ pub(super) fn arms<S: Simd>(w: Wide<S>, posture: &Posture, joint: usize) -> [Lan
         w.load(&posture.after.arm_x, joint),
         w.load(&posture.after.arm_y, joint),
     ]
-}
-
-/// Numbers of a lane of links, counted as [`ByLink`] does.
-#[inline(always)]
-pub(super) fn load<S: Simd>(w: Wide<S>, all: &ByLink, place: usize) -> [Lane<S>; 3] {
-    [
-        w.load(&all.x, place),
-        w.load(&all.y, place),
-        w.load(&all.turn, place),
-    ]
-}
-
-#[inline(always)]
-fn blocks<S: Simd>(w: Wide<S>, from: &[Array; 6], place: usize) -> [Lane<S>; 6] {
-    let mut block = [w.splat(0.0); 6];
-    for k in 0..6 {
-        block[k] = w.load(&from[k], place);
-    }
-    block
 }
 
 #[cfg(test)]

@@ -6,7 +6,6 @@ use nalgebra::{DMatrix, DVector, Matrix2x3};
 
 use super::equations::{Equations, Sum};
 use super::ideal_joints::{HingeTarget, limbs};
-use super::impulses::Step;
 use super::{Impulses, Joining, JointState, Linkage};
 use crate::bodies::GroupBodies;
 use crate::chains::makeup::Makeup;
@@ -144,31 +143,12 @@ impl<'a> Inside<'a> {
             .then_some(x)
     }
 
-    /// The answer of a step by the impulses in joints with clearance, in the room that they need; none if there is none.
-    pub fn by_impulses(&self, weights: Weights, b: &[f64]) -> Option<Vec<f64>> {
+    /// The answer of a step by the impulses in joints with clearance; none if there is none.
+    pub fn by_impulses(&mut self, weights: Weights, b: &[f64]) -> Option<Vec<f64>> {
         let mut x = b.to_vec();
         let mut work = Impulses::default();
         self.linkage
             .step(self.bodies, weights, self.joint_state, &mut work, &mut x)
-            .then_some(x)
-    }
-
-    /// The same with room for more rows and wheels than there are.
-    pub fn by_roomy_impulses(&self, weights: Weights, b: &[f64]) -> Option<Vec<f64>> {
-        let linkage = self.linkage;
-        let Joining::Clearance(bearing) = &linkage.joining else {
-            return None;
-        };
-        let step = Step {
-            linkage,
-            bearing,
-            bodies: self.bodies,
-            weights,
-            joint_state: self.joint_state,
-        };
-        let mut x = b.to_vec();
-        Impulses::default()
-            .solve::<2, 24, 24>(step, &mut x)
             .then_some(x)
     }
 

@@ -90,7 +90,7 @@ impl Points {
         for (bearing, memory) in bearings {
             let gaps = memory.each(MemoryField::Gap).take(self.series.rollers);
             let stored = gaps.filter(|gap| *gap < 0.0);
-            let stored = stored.map(|gap| bearing.energy(gap));
+            let stored = stored.map(|gap| bearing.law.energy(-gap));
             out.stores[Store::Joints as usize] += stored.sum::<f64>();
         }
         out.hold_in_joints(found.resistance.stored);

@@ -5,8 +5,8 @@
 use chaindrive_integrate::{Array, Weights};
 use pulp::Simd;
 
-use crate::chains::links::by_link::ByLink;
-use crate::chains::links::reactions::{arms, load};
+use crate::chains::links::by_link::{ByLink, load};
+use crate::chains::links::reactions::arms;
 use crate::chains::links::{JointState, Linkage};
 use crate::contact::BoreContact;
 use crate::lanes::{Lane, Wide};
@@ -31,13 +31,6 @@ pub(super) struct RowLane<S: Simd> {
     pub(super) y: Lane<S>,
     pub(super) turn_before: Lane<S>,
     pub(super) turn_after: Lane<S>,
-}
-
-impl<S: Simd> RowLane<S> {
-    #[inline(always)]
-    pub(super) fn dot(&self, other: &Self) -> Lane<S> {
-        self.x * other.x + self.y * other.y
-    }
 }
 
 impl Rows {
@@ -65,17 +58,6 @@ impl Rows {
             turn_before: w.load(&self.turn_before, start),
             turn_after: w.load(&self.turn_after, start),
         }
-    }
-
-    /// Direction and levers of one joint: x, y, before, after.
-    #[inline(always)]
-    pub(super) fn at(&self, joint: usize) -> [f64; 4] {
-        [
-            self.x[joint],
-            self.y[joint],
-            self.turn_before[joint],
-            self.turn_after[joint],
-        ]
     }
 
     /// The normals of all joints.
@@ -142,8 +124,8 @@ impl Rows {
             let change =
                 tx * (after[0] - before[0]) + ty * (after[1] - before[1]) + turn_after * after[2]
                     - turn_before * before[2];
-            let stops = (w.load(&pins.rub, start) * change).greater(zero);
             let secant = w.load(&pins.secant, start);
+            let stops = (w.load(&pins.rub, start) * change).greater(zero);
             let drag = stops.select(secant, w.load(&pins.drag, start).min(secant));
             let across = w.load(&pins.across, start);
             let across = across.greater(soft).select(across, zero);
