@@ -4,7 +4,9 @@
 use std::convert::Infallible;
 
 use chaindrive::record::{End, Provenance, Sink};
-use chaindrive::{Channel, Request, Scene, SettingValue, Settings, Simulation, execute};
+use chaindrive::{
+    Channel, Memory, Report, Request, Scene, SettingValue, Settings, Simulation, execute,
+};
 
 use crate::live::{loose, preset};
 use crate::run_in::{channel, ran};
@@ -22,10 +24,14 @@ const ALONE: [&str; 8] = [
     "strand_tension_max",
 ];
 
+fn recorded(scene: &Scene, settings: [(&str, &str); 3], names: &str) -> (Report, Memory) {
+    ran(scene, &[&settings[..], &[("record", names)]].concat())
+}
+
 /// What else is recorded changes no bit of a channel, in a run-in that becomes the record as little as elsewhere.
 #[test]
 fn a_channel_is_the_same_alone_and_among_all() {
-    let short = [("until", "1 ms"), ("every", "50 us"), ("run_in", "0")];
+    let short = [("until", "1 ms"), ("every", "50 us"), ("run_in", "0 s")];
     let after = [("until", "50 ms"), ("every", "1 ms"), ("run_in", "auto")];
     let scenes = [
         (preset("industrial_16b"), short),
@@ -35,8 +41,7 @@ fn a_channel_is_the_same_alone_and_among_all() {
         (SOFT.scene(), after),
     ];
     for (scene, settings) in scenes {
-        let with = |names| ran(&scene, &[&settings[..], &[("record", names)]].concat());
-        let (report, all) = with("all");
+        let (report, all) = recorded(&scene, settings, "all");
         let system = report.simulation.system();
         let is_there = |name: &&str| Channel::from_name(name).unwrap().is_of(system);
         let mut compared = 0;
@@ -44,7 +49,7 @@ fn a_channel_is_the_same_alone_and_among_all() {
             if names.is_empty() {
                 continue;
             }
-            let (_, few) = with(&names.join(","));
+            let (_, few) = recorded(&scene, settings, &names.join(","));
             for name in names {
                 let wanted = Channel::from_name(name).unwrap();
                 let [few, all] = [&few, &all].map(|memory| channel(memory, wanted));
@@ -91,7 +96,7 @@ impl Sink for Looking {
 
 #[test]
 fn nobody_pays_for_channels_that_are_not_asked_for() {
-    let settings = [("until", "1 ms"), ("every", "0.1 ms"), ("run_in", "0")];
+    let settings = [("until", "1 ms"), ("every", "0.1 ms"), ("run_in", "0 s")];
     let settings = settings
         .iter()
         .fold(Settings::default(), |all, (key, value)| {
