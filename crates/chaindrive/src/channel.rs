@@ -302,25 +302,30 @@ impl Channel {
 
     /// Sights that it needs of a state.
     pub(crate) fn sights(self) -> Sights {
-        Sights {
-            laws: matches!(
-                self,
-                Self::Contacts
-                    | Self::ContactDepth
-                    | Self::FilmThickness
-                    | Self::StrandTensionMax
-                    | Self::StrandTensionMin
-                    | Self::EnergyKinetic
-                    | Self::EnergyStored
-                    | Self::EnergyDissipated
-                    | Self::EnergySupplied
-                    | Self::EnergyResidual
-                    | Self::EnergyStores
-                    | Self::EnergyFlows
-                    | Self::EnergyLosses
-            ),
-            spans: matches!(self, Self::SpanTension),
+        match self {
+            Self::Contacts | Self::ContactDepth | Self::FilmThickness => Sights::LAWS,
+            Self::StrandTensionMax | Self::StrandTensionMin => Sights::LAWS.and(Sights::STRANDS),
+            Self::EnergyKinetic
+            | Self::EnergyStored
+            | Self::EnergyDissipated
+            | Self::EnergySupplied
+            | Self::EnergyResidual
+            | Self::EnergyStores
+            | Self::EnergyFlows
+            | Self::EnergyLosses => Sights::ENERGIES,
+            Self::SpanTension => Sights::SPANS,
+            Self::RollerX | Self::RollerY => Sights::PLACES,
+            Self::RollerVx | Self::RollerVy => Sights::VELOCITIES,
+            Self::LinkAngle => Sights::JOINTS,
+            _ if self.axis() == Axis::Joint => Sights::JOINTS,
+            _ => Sights::default(),
         }
+    }
+
+    /// Sights that several need.
+    pub(crate) fn sights_of(channels: &[Self]) -> Sights {
+        let each = channels.iter().map(|it| it.sights());
+        each.fold(Sights::default(), Sights::and)
     }
 
     /// Appends the entries of one sample; `start` is the energy of the first sample.

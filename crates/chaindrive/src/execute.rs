@@ -4,7 +4,7 @@ mod start;
 
 use std::convert::Infallible;
 
-use chaindrive_mechanics::Drive;
+use chaindrive_mechanics::{Assembled, Drive, Sights};
 use serde_json::{Map, Value};
 
 use crate::describe::wraps;
@@ -146,7 +146,7 @@ pub(crate) fn execute_by<S: Sink>(
     let mut waiting = None;
     if setup.provenance.run.run_in != RunIn::None {
         let simulation = setup.simulation().map_err(not_started)?;
-        let channels = channels(request, &simulation).map_err(RunError::Start)?;
+        let channels = channels(request, &setup.assembled).map_err(RunError::Start)?;
         sink.has_room(&simulation, &channels, &setup.provenance.run)
             .map_err(RunError::Sink)?;
         if request.checkpoint_every.is_some() {
@@ -160,7 +160,9 @@ pub(crate) fn execute_by<S: Sink>(
             waiting = Some((simulation, provenance, summary));
         }
     }
-    let started = setup.run_in(request, onlooker).map_err(not_started);
+    let sights = sights(request, sink, &setup.assembled).map_err(RunError::Start)?;
+    let started = setup.run_in(request, sights, onlooker);
+    let started = started.map_err(not_started);
     let state = match (started, waiting) {
         (Err(error), Some((simulation, provenance, summary))) => {
             let ending = match &error {
@@ -211,8 +213,9 @@ fn resume<S: Sink>(
             short_runs: None,
             is_verified: checkpoint.is_verified,
         };
-        let state = setup.run_in(&request, onlooker).map_err(not_started)?;
-        return complete(&request, state, sink, onlooker);
+        let sights = sights(&request, sink, &setup.assembled).map_err(RunError::Start)?;
+        let state = setup.run_in(&request, sights, onlooker);
+        return complete(&request, state.map_err(not_started)?, sink, onlooker);
     };
     let start = checkpoint.start(&drive, &|| onlooker.stop());
     let start = start.map_err(|error| match error {
@@ -260,6 +263,8 @@ fn complete<S: Sink>(
     let run = provenance.run.clone();
     announce(request, &mut provenance, &simulation, sink)?;
     summary.kept = sink.keeps_samples();
+    let sights = sights(request, sink, simulation.assembled()).map_err(RunError::Start)?;
+    simulation.sample_only(sights);
 
     if request.checkpoint_every.is_some() && summary.samples == 0 {
         // With no sample before it: a store that is killed here is in nobody's way.
@@ -350,18 +355,31 @@ fn announce<S: Sink>(
         provenance.resolved_scene = Some(text);
         provenance.assumed = assumed;
     }
-    let channels = channels(request, simulation).map_err(RunError::Start)?;
+    let channels = channels(request, simulation.assembled()).map_err(RunError::Start)?;
     sink.begin(simulation, &channels, provenance)
         .map_err(RunError::Sink)
 }
 
 /// The channels that are asked for, or those that the drive has by default.
-fn channels(request: &Request, simulation: &Simulation) -> Result<Vec<Channel>, SimulationError> {
+fn channels(request: &Request, assembled: &Assembled) -> Result<Vec<Channel>, SimulationError> {
     if request.record.is_empty() {
-        Ok(Channel::defaults(&simulation.assembled().drive))
+        Ok(Channel::defaults(&assembled.drive))
     } else {
-        Channel::chosen(&request.record, simulation.system())
+        Channel::chosen(&request.record, &assembled.system)
     }
+}
+
+/// Readings that samples are made of: those of the channels, where somebody keeps them, and what the account of the run takes in.
+fn sights<S: Sink>(
+    request: &Request,
+    sink: &S,
+    assembled: &Assembled,
+) -> Result<Sights, SimulationError> {
+    if !sink.keeps_samples() {
+        return Ok(Sights::ENERGIES);
+    }
+    let channels = channels(request, assembled)?;
+    Ok(Channel::sights_of(&channels).and(Sights::ENERGIES))
 }
 
 /// Tells the sink how the run ended; returns the verdict, and what the result says about itself.
@@ -436,7 +454,8 @@ impl Simulation {
             request.run.run_in = RunIn::None;
         }
         let setup = Setup::new(&request, None, onlooker)?;
-        let state = setup.run_in(&request, onlooker).map_err(not_started)?;
+        let state = setup.run_in(&request, Sights::default(), onlooker);
+        let state = state.map_err(not_started)?;
         if !state.simulation.has_samples_ahead() {
             return Ok(state.simulation);
         }

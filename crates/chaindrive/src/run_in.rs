@@ -5,7 +5,7 @@ mod steady;
 use std::f64::consts::TAU;
 use std::fmt;
 
-use chaindrive_mechanics::{Assembled, Drive, EventKinds};
+use chaindrive_mechanics::{Assembled, Drive, EventKinds, Sights};
 use serde::{Deserialize, Serialize};
 
 use crate::figure::Measure;
@@ -130,7 +130,7 @@ pub fn run_in(
     if run.run_in == RunIn::Usual {
         return Ok((start, None));
     }
-    let record = record_start(start, run, onlooker)?;
+    let record = record_start(start, run, Sights::default(), onlooker)?;
     Ok((record.start, record.ran_in))
 }
 
@@ -160,10 +160,11 @@ impl RecordStart {
     }
 }
 
-/// Runs an assembled drive in, if the run says so.
+/// Runs an assembled drive in, if the run says so; samples that are taken there have these sights.
 pub(crate) fn record_start(
     start: Assembled,
     run: &Run,
+    sights: Sights,
     onlooker: &dyn Onlooker,
 ) -> Result<RecordStart, SimulationError> {
     let stop = &|| onlooker.stop();
@@ -185,13 +186,13 @@ pub(crate) fn record_start(
                 run_in: RunIn::Auto,
                 ..run.clone()
             };
-            let mut record = record_start(start, &asked, onlooker)?;
+            let mut record = record_start(start, &asked, sights, onlooker)?;
             if let Some(ran_in) = &mut record.ran_in {
                 ran_in.by_default = true;
             }
             return Ok(record);
         }
-        RunIn::Auto => return steady::steady_start(&start, run, onlooker),
+        RunIn::Auto => return steady::steady_start(&start, run, sights, onlooker),
     };
     let ran_in = Some(RunInReport::lasted(time, None));
     let mut moving = before(&start.drive, time, run, stop)?;

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Statistics, Stepper};
 use chaindrive_mechanics::{
-    Assembled, ContactEvent, Energy, EventKinds, Impact, Observation, Record, Sights, System,
+    Assembled, ContactEvent, Energy, EventKinds, Flow, Impact, Observation, Record, Sights, System,
 };
 
 use crate::{Run, SimulationError};
@@ -55,7 +55,7 @@ pub struct Simulation {
     /// The state before the last step, when that went beyond the time read: a change at that time begins from here.
     before: Option<Box<PreviousState>>,
     /// Samples that were taken before anybody asked for them.
-    ahead: VecDeque<Sample>,
+    ahead: VecDeque<Box<Sample>>,
     /// Time of the last sample or reading \[s\].
     read: f64,
     assembled: Arc<Assembled>,
@@ -65,7 +65,10 @@ pub struct Simulation {
     events: EventKinds,
     next: u64,
     observation: Observation,
+    /// Readings that samples are made of.
+    sights: Sights,
     record: Record,
+    /// Coordinates, velocities, flows of energy and first-order states between steps.
     buffers: [Vec<f64>; 4],
     start_energy: Option<Energy>,
     stepping_time: f64,
@@ -151,7 +154,7 @@ impl Simulation {
             buffers: [
                 vec![0.0; dofs],
                 vec![0.0; dofs],
-                vec![0.0; state.quadratures.len()],
+                vec![0.0; Flow::ALL.len()],
                 vec![0.0; state.z.len()],
             ],
             moving: Moving {
@@ -174,6 +177,7 @@ impl Simulation {
             events: run.events,
             next: 0,
             observation: Observation::default(),
+            sights: Sights::ALL,
             record,
             start_energy: None,
             stepping_time: 0.0,
@@ -190,11 +194,11 @@ impl Simulation {
     pub fn next_sample(&mut self) -> Result<Option<&Observation>, SimulationError> {
         // Counted, not summed: the thousandth sample is at 1000 Δt to the last bit.
         let time = self.next as f64 * self.every;
-        if time > self.until * (1.0 + 1e-12) {
+        if !self.has_sample(self.next) {
             return Ok(None);
         }
         if let Some(sample) = self.ahead.pop_front() {
-            self.hand_out(sample, time);
+            self.hand_out(*sample, time);
             return Ok(Some(&self.observation));
         }
         // Whoever has read beyond this sample cannot go back for it.
@@ -205,7 +209,12 @@ impl Simulation {
             });
         }
         while !self.advance(Duration::MAX)? {}
-        self.sample(time);
+        let sights = if self.is_at_last_sample() {
+            Sights::ALL
+        } else {
+            self.sights
+        };
+        self.sample(sights, time);
         self.next += 1;
         Ok(Some(&self.observation))
     }
@@ -230,13 +239,36 @@ impl Simulation {
         self.until = until;
     }
 
+    /// Has samples made of these readings alone, until others are named; contact forces, tensions of links and motions of bodies are always
+    /// among them. The last sample of a run is read in full.
+    pub(crate) fn sample_only(&mut self, sights: Sights) {
+        self.sights = sights;
+    }
+
+    /// Whether the next sample is the last.
+    pub(crate) fn is_at_last_sample(&self) -> bool {
+        !self.has_sample(self.next + 1)
+    }
+
+    /// Whether there is a sample of a number.
+    fn has_sample(&self, number: u64) -> bool {
+        number as f64 * self.every <= self.until * (1.0 + 1e-12)
+    }
+
     /// Reads everything off the state at a time \[s\] within the last step.
     fn observe(&mut self, time: f64) {
+        self.observe_some(Sights::ALL, time);
+    }
+
+    /// Reads these sights there.
+    fn observe_some(&mut self, sights: Sights, time: f64) {
         self.read = time;
         let mut seen = std::mem::take(&mut self.observation);
-        self.look_at(Sights::ALL, &mut seen);
+        self.look_at(sights, &mut seen);
         self.observation = seen;
-        self.start_energy.get_or_insert(self.observation.energy);
+        if sights.has(Sights::ENERGIES) {
+            self.start_energy.get_or_insert(self.observation.energy);
+        }
     }
 
     /// Reads everything at the time of the last reading, where only [views](View) were read since.

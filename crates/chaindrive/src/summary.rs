@@ -10,6 +10,8 @@ mod steadiness;
 mod value_counts;
 mod waves;
 
+use std::sync::OnceLock;
+
 use chaindrive_mechanics::{ContactEvent, Energy, Extremes, Flow, Impact, Observation, Place};
 use hdrhistogram::Histogram;
 use serde::{Deserialize, Serialize};
@@ -71,6 +73,9 @@ pub struct Summary {
     harmonics: Vec<f64>,
     /// Time of the last sample \[s\].
     ended: f64,
+    /// Statistics of the spans, once somebody has asked for them: they are told in several places, and take long.
+    #[serde(skip)]
+    known: OnceLock<Vec<Option<Steadiness>>>,
 }
 
 /// Tension of one span over the run.
@@ -223,6 +228,7 @@ impl Summary {
             account: Account::default(),
             harmonics: Vec::new(),
             ended: f64::NAN,
+            known: OnceLock::new(),
         }
     }
 
@@ -249,6 +255,7 @@ impl Summary {
             span.end(end, &self.harmonics);
         }
         self.reading = end;
+        self.known.take();
         self.account
             .end(simulation.outstanding_periods(), self.period);
     }
@@ -260,6 +267,7 @@ impl Summary {
         let (pressed, phases) = rest.split_at(self.carried.chains());
         let first = *self.first_reading.get_or_insert(time);
         self.reading = time - first;
+        self.known.take();
         for (span, tension) in self.spans.iter_mut().zip(tensions) {
             span.push(time - first, *tension, &self.harmonics);
         }
@@ -301,15 +309,18 @@ impl Summary {
     /// s = 15 % exp(−(t_run-in + T/2)/(2 c/k))     of the scale; c/k: relaxation of the slowest tensioner
     /// ```
     pub fn steadiness(&self) -> Vec<Option<Steadiness>> {
-        let middle = self.run_in + 0.5 * self.reading;
-        let left = LEFT_OF_START * (-middle / self.settling.max(f64::MIN_POSITIVE)).exp();
-        let spans = self.spans.iter().zip(self.scales());
-        spans
-            .map(|(span, scale)| {
-                let known = span.blocks.steadiness(scale)?;
-                Some(known.and_start(left * scale))
-            })
-            .collect()
+        let find = || {
+            let middle = self.run_in + 0.5 * self.reading;
+            let left = LEFT_OF_START * (-middle / self.settling.max(f64::MIN_POSITIVE)).exp();
+            let spans = self.spans.iter().zip(self.scales());
+            spans
+                .map(|(span, scale)| {
+                    let known = span.blocks.steadiness(scale)?;
+                    Some(known.and_start(left * scale))
+                })
+                .collect()
+        };
+        self.known.get_or_init(find).clone()
     }
 
     /// Scale of errors and drifts, by span \[N\]: the mean tension of the span, or a tenth of that of the tight span, whichever is more.

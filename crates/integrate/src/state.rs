@@ -164,9 +164,12 @@ impl State {
         };
         let interval = Interval::new(past.t, self.t, t);
         let weights = self.interpolation.weights(interval);
-        for i in 0..self.q.len() {
-            let ends = [past.q[i], self.q[i], past.v[i], self.v[i], past.a[i], a[i]];
-            (q[i], v[i]) = weights.apply(ends);
+        // Rows of one length: the compiler drops the checks of places, and takes several coordinates at a time.
+        let n = self.q.len();
+        let ends = [&past.q, &self.q, &past.v, &self.v, &past.a, a].map(|row| &row[..n]);
+        let (q, v) = (&mut q[..n], &mut v[..n]);
+        for i in 0..n {
+            (q[i], v[i]) = weights.apply(ends.map(|row| row[i]));
         }
     }
 

@@ -447,11 +447,11 @@ impl Chain {
     pub(crate) fn plate_energy(
         &self,
         at: Moment<'_>,
-        plates: &PlateContact,
+        found: (&PlateContact, &Touch),
         frame: &Frame,
         record: &Record,
     ) -> f64 {
-        ask!(self, record, (chain, work) => chain.plate_energy(at, plates, frame, work))
+        ask!(self, record, (chain, work) => chain.plate_energy(at, found, frame, work))
     }
 }
 

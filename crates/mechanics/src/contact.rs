@@ -56,6 +56,7 @@ pub(crate) use wrench::{LaneTally, Onsets, Wrench};
 
 use slot_differences::SlotDifferences;
 
+use crate::lanes::LANES;
 use crate::profile::{GapFace, RailFace};
 use crate::surface::{Flank, Surface};
 
@@ -261,13 +262,37 @@ impl Contacts {
         let contacts = state
             .each(MemoryField::Gap)
             .zip(state.each(MemoryField::Share));
-        let closed = contacts.filter(|(gap, _)| *gap < 0.0);
-        closed
-            .map(|(gap, share)| match &of_flank {
-                None => law.energy(-gap),
-                Some(flank) => (1.0 - share) * law.energy(-gap) + share * flank.energy(-gap),
-            })
-            .sum()
+        let mut closed = contacts.filter(|(gap, _)| *gap < 0.0);
+        let batches = std::iter::from_fn(|| {
+            // Where there are fewer than eight, the rest is as deep as none of them and counts for nothing.
+            let (mut depths, mut shares, mut count) = ([SHALLOW; LANES], [0.0; LANES], 0);
+            for (gap, share) in closed.by_ref().take(LANES) {
+                (depths[count], shares[count]) = (-gap, share);
+                count += 1;
+            }
+            let mut stored = law.energies(depths);
+            if let Some(of_flank) = &of_flank {
+                let on_flank = of_flank.energies(depths);
+                for ((stored, share), on_flank) in stored.iter_mut().zip(shares).zip(on_flank) {
+                    *stored = (1.0 - share) * *stored + share * on_flank;
+                }
+            }
+            (count > 0).then(|| stored.into_iter().take(count))
+        });
+        batches.flatten().sum()
+    }
+
+    /// Adds the normal forces \[N\] of a state to those on the rollers of the chain.
+    pub(crate) fn add_forces(&self, state: &ContactMemory, to: &mut [f64]) {
+        for (block, run) in self.runs.iter().enumerate() {
+            let own = &mut to[run.start..][..run.count];
+            for side in 0..self.sides() {
+                let row = state.row(MemoryField::Force, side * self.runs.len() + block);
+                for (sum, force) in own.iter_mut().zip(row) {
+                    *sum += force;
+                }
+            }
+        }
     }
 }
 

@@ -1,186 +1,55 @@
 //! Quantities that can be read off a state: tensions, forces, positions, energies.
 
+mod ledger;
+mod names;
+
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
 
-use crate::applied::{LISTS, blended};
-use crate::bodies::{RailContact, WheelContacts, WheelSupport};
+use crate::applied::{LISTS, StepEnd, blended};
+use crate::bodies::WheelContacts;
 use crate::contact::MemoryField;
-use crate::energy::{Energy, Flow, Store};
 use crate::seam::Observation;
 use crate::system::{Member, Reading, Record, System};
-use crate::tensioner::ReducedInertia;
 
-/// Size of a chain.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ChainSize {
-    /// Rollers.
-    pub rollers: usize,
-    /// Links.
-    pub links: usize,
-    /// Joints with a state of their own.
-    pub joints: usize,
-    /// Spans between sprockets.
-    pub spans: usize,
-}
+pub use names::ChainSize;
 
-/// Readings of a state beside places, speeds and forces that steps applied.
+/// Readings of a state that are made where somebody wants them: a set. Forces that steps applied, motions of bodies and tensions of links are
+/// always among them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Sights {
-    /// Answers of the laws: contacts and their depths, films, energies.
-    pub laws: bool,
-    /// Tensions of spans.
-    pub spans: bool,
-}
+pub struct Sights(u8);
 
 impl Sights {
+    /// Answers of the laws: contacts, their depths, films.
+    pub const LAWS: Self = Self(1);
+    /// The energy ledger.
+    pub const ENERGIES: Self = Self(1 << 1);
+    /// Tensions of spans.
+    pub const SPANS: Self = Self(1 << 2);
+    /// Places of rollers.
+    pub const PLACES: Self = Self(1 << 3);
+    /// Velocities of rollers.
+    pub const VELOCITIES: Self = Self(1 << 4);
+    /// Tensions of the strands of every link.
+    pub const STRANDS: Self = Self(1 << 5);
+    /// How links and joints stand that have a state of their own.
+    pub const JOINTS: Self = Self(1 << 6);
     /// Everything.
-    pub const ALL: Self = Self {
-        laws: true,
-        spans: true,
-    };
+    pub const ALL: Self = Self((1 << 7) - 1);
 
     /// The sights of both.
     #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        Self {
-            laws: self.laws || other.laws,
-            spans: self.spans || other.spans,
-        }
+    pub const fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Whether some of these are wanted.
+    pub const fn has(self, some: Self) -> bool {
+        self.0 & some.0 != 0
     }
 }
 
 impl System {
-    /// Names of the spans: "from-to" for consecutive sprockets of the route.
-    pub fn span_names(&self) -> Vec<String> {
-        let routes = self.chains.iter().map(|member| &member.route);
-        routes
-            .flat_map(|route| {
-                let name = |k: usize| &self.bodies.wheels[route[k % route.len()]].name;
-                (0..route.len()).map(move |i| format!("{}-{}", name(i), name(i + 1)))
-            })
-            .collect()
-    }
-
-    /// Sprockets at both ends of every span, by index, in the order of [`span_names`](Self::span_names).
-    pub fn span_sprockets(&self) -> Vec<[usize; 2]> {
-        let routes = self.chains.iter().map(|member| &member.route);
-        routes
-            .flat_map(|route| (0..route.len()).map(|i| [route[i], route[(i + 1) % route.len()]]))
-            .collect()
-    }
-
-    /// Number of sprockets that turn by themselves, and of those whose rotation is given, directly or through gears.
-    pub fn turning_sprockets(&self) -> [usize; 2] {
-        let wheels = &self.bodies.wheels;
-        let free = wheels.iter().filter(|it| it.turn.turned_by().is_some());
-        let free = free.count();
-        [free, wheels.len() - free]
-    }
-
-    /// Names of the chains, empty where there is one only; and how many rollers, links, joints and spans each has.
-    pub fn chain_sizes(&self) -> Vec<(String, ChainSize)> {
-        let size = |member: &Member| ChainSize {
-            rollers: member.chain.rollers(),
-            links: member.chain.links(),
-            joints: member.chain.joints(),
-            spans: member.route.len(),
-        };
-        let members = self.chains.iter();
-        members
-            .map(|member| (member.name.clone().unwrap_or_default(), size(member)))
-            .collect()
-    }
-
-    /// Names of the shafts that have one, those that carry no more than a sprocket of their own left out.
-    pub fn shaft_names(&self) -> Vec<String> {
-        let shafts = self.bodies.shafts.iter();
-        shafts.filter_map(|shaft| shaft.name.clone()).collect()
-    }
-
-    /// The shaft of a name, or that of the sprocket of a name.
-    pub fn shaft_named(&self, name: &str) -> Option<usize> {
-        let mut shafts = self.bodies.shafts.iter();
-        let own = shafts.position(|shaft| shaft.name.as_deref() == Some(name));
-        let wheel = || self.bodies.wheels.iter().find(|wheel| wheel.name == name);
-        own.or_else(|| wheel().map(|wheel| wheel.shaft))
-    }
-
-    /// The sprocket of a name.
-    pub fn sprocket_named(&self, name: &str) -> Option<usize> {
-        let mut wheels = self.bodies.wheels.iter();
-        wheels.position(|wheel| wheel.name == name)
-    }
-
-    /// The tensioner of a name.
-    pub fn tensioner_named(&self, name: &str) -> Option<usize> {
-        let mut slides = self.bodies.slides.iter();
-        slides.position(|slide| slide.name == name)
-    }
-
-    /// Names of the couplings.
-    pub fn coupling_names(&self) -> Vec<String> {
-        let couplings = self.bodies.couplings.iter();
-        couplings.map(|coupling| coupling.name.clone()).collect()
-    }
-
-    /// Names of the sprockets.
-    pub fn sprocket_names(&self) -> Vec<String> {
-        self.bodies
-            .wheels
-            .iter()
-            .map(|wheel| wheel.name.clone())
-            .collect()
-    }
-
-    /// Names of the guides.
-    pub fn guide_names(&self) -> Vec<String> {
-        self.bodies
-            .rails
-            .iter()
-            .map(|rail| rail.name.clone())
-            .collect()
-    }
-
-    /// Names of the tensioners.
-    pub fn tensioner_names(&self) -> Vec<String> {
-        self.bodies
-            .slides
-            .iter()
-            .map(|slide| slide.name.clone())
-            .collect()
-    }
-
-    /// Names of the tensioners whose oil can be compressed.
-    pub fn oil_column_names(&self) -> Vec<String> {
-        let slides = self.bodies.slides.iter();
-        let columns = slides.filter(|slide| slide.push.pressure(0.0, 0.0).is_some());
-        columns.map(|slide| slide.name.clone()).collect()
-    }
-
-    /// SI units of the position and of the push of every tensioner.
-    pub fn tensioner_units(&self) -> Vec<(&'static str, &'static str)> {
-        let carriers = self.bodies.slides.iter().map(|slide| &slide.carrier);
-        carriers
-            .map(|carrier| (carrier.coordinate_unit(), carrier.push_unit()))
-            .collect()
-    }
-
-    /// Where in the drive a coordinate of the state belongs, in words.
-    pub fn place(&self, dof: usize) -> String {
-        let chain = self.chains.iter().find(|m| m.entries.contains(&dof));
-        match chain {
-            Some(member) => {
-                let place = member.chain.name(dof - member.entries.start);
-                match &member.name {
-                    Some(name) => format!("{place}, in chain `{name}`"),
-                    None => place,
-                }
-            }
-            None => self.bodies.name(dof),
-        }
-    }
-
     /// Reads everything off a state between or at accepted steps.
     ///
     /// Evaluates the forces once, on `record` as work space; the system does not change. Forces of contacts and joints are those that
@@ -195,9 +64,10 @@ impl System {
         self.observe_some(Sights::ALL, at, flows, record, out);
     }
 
-    /// Reads off what is wanted, as [`observe`](Self::observe) does; the rest is not to be used.
+    /// Reads off what is wanted, as [`observe`](Self::observe) does; the rest is not to be used, and lists of links and rollers that nobody
+    /// wants are empty.
     ///
-    /// Places, speeds and forces that steps applied need no evaluation of the laws.
+    /// The laws are evaluated for their own answers and for energies alone, where links are springs and the forces that steps applied are kept.
     pub fn observe_some(
         &self,
         sights: Sights,
@@ -207,7 +77,9 @@ impl System {
         out: &mut Observation,
     ) {
         let known = || self.chains.iter().all(|member| member.chain.has_springs());
-        let evaluates = sights.laws || self.applied.around(at.t).is_none() || !known();
+        let applied = self.applied.around(at.t);
+        let evaluates =
+            sights.has(Sights::LAWS.and(Sights::ENERGIES)) || applied.is_none() || !known();
         if evaluates {
             let mut reading = std::mem::take(&mut record.reading);
             reading.a.resize(self.dofs, 0.0);
@@ -225,41 +97,40 @@ impl System {
             }
             member.chain.observe(member.own(at), record, out);
             links += member.chain.links();
-            out.strand_tension_max.resize(links, f64::NAN);
-            out.strand_tension_min.resize(links, f64::NAN);
+            if sights.has(Sights::STRANDS) {
+                out.strand_tension_max.resize(links, f64::NAN);
+                out.strand_tension_min.resize(links, f64::NAN);
+            }
         }
-        self.observe_forces(at, record, evaluates, out);
-        self.blend_forces(at.t, out);
-        set_lengths(&mut out.joint_force, &out.joint_force_x, &out.joint_force_y);
-        set_lengths(&mut out.bush_force, &out.bush_force_x, &out.bush_force_y);
-        self.observe_sprockets(at, record, out);
-        if evaluates {
-            self.observe_contacts(record, out);
-        }
-        if sights.spans {
-            self.observe_spans(&mut record.reading, out);
-        }
-        self.observe_shafts(at, out);
-        self.observe_tensioners(at, out);
-        if sights.laws {
-            out.energy = self.energy(at, flows, record);
-        }
-    }
-
-    /// Forces of contacts and joints, as a record has them; zero for rollers where it was not evaluated in the present windows.
-    fn observe_forces(
-        &self,
-        at: Moment<'_>,
-        record: &Record,
-        evaluated: bool,
-        out: &mut Observation,
-    ) {
         for list in forces(out) {
             list.clear();
         }
         for (member, record) in self.chains.iter().zip(&record.chains) {
             member.chain.observe_forces(member.own(at), record, out);
         }
+        match applied {
+            Some(around) => self.blend_forces(around, out),
+            None => self.observe_loads(record, out),
+        }
+        set_lengths(&mut out.joint_force, &out.joint_force_x, &out.joint_force_y);
+        set_lengths(&mut out.bush_force, &out.bush_force_x, &out.bush_force_y);
+        self.observe_sprockets(at, record, out);
+        if sights.has(Sights::LAWS) {
+            self.observe_contacts(record, out);
+        }
+        if sights.has(Sights::SPANS) {
+            self.observe_spans(&mut record.reading, out);
+        }
+        self.observe_shafts(at, out);
+        self.observe_tensioners(at, out);
+        if sights.has(Sights::ENERGIES) {
+            out.energy = self.energy(at, flows, record);
+        }
+        out.forget_all_but(sights);
+    }
+
+    /// Appends the loads of sprockets and guides and the forces of contacts, as an evaluation in the present windows has them.
+    fn observe_loads(&self, record: &Record, out: &mut Observation) {
         for wrench in &record.wheel_wrenches {
             out.sprocket_torque.push(wrench.moment);
             out.sprocket_force_x.push(wrench.force[0]);
@@ -270,25 +141,17 @@ impl System {
             out.guide_force_y.push(wrench.force[1]);
         }
         out.contact_force.resize(self.rollers(), 0.0);
-        if !evaluated {
-            return;
-        }
         let mut first = 0;
         for (member, record) in self.chains.iter().zip(&record.chains) {
+            let own = &mut out.contact_force[first..][..member.chain.rollers()];
             for (on, touch) in member.contacts.teeth.iter().zip(&record.loads.teeth) {
-                let slots = on.contacts.slots;
-                on.contacts.for_each_slot(|slot, roller| {
-                    for side in 0..on.contacts.sides() {
-                        let force = touch.state.get(MemoryField::Force, side * slots + slot);
-                        out.contact_force[first + roller] += force;
-                    }
-                });
+                on.contacts.add_forces(&touch.state, own);
             }
-            first += member.chain.rollers();
+            first += own.len();
         }
     }
 
-    /// Keeps the forces of a step that is accepted, as `record` has them.
+    /// Keeps the forces of a step that is accepted, as `record` has them: tensions of links that are springs are none of them.
     pub(crate) fn note_applied(&mut self, at: Moment<'_>, record: &Record) {
         let mut applied = std::mem::take(&mut self.applied);
         applied.push(at.t, |lists| {
@@ -298,22 +161,33 @@ impl System {
                 pairs.for_each(|(list, kept)| std::mem::swap(list, kept));
             };
             lend(&mut seen);
-            self.observe_forces(at, record, true, &mut seen);
+            for list in forces(&mut seen) {
+                list.clear();
+            }
+            let mut links = 0;
+            for (member, record) in self.chains.iter().zip(&record.chains) {
+                let chain = &member.chain;
+                links += chain.links();
+                if !chain.has_springs() || chain.joints() > 0 {
+                    chain.observe_forces(member.own(at), record, &mut seen);
+                }
+                seen.link_tension.resize(links, 0.0);
+            }
+            self.observe_loads(record, &mut seen);
             lend(&mut seen);
         });
         self.applied = applied;
     }
 
-    /// Puts the forces that steps applied in the place of those of the laws, where they are known. The tension of links that are
+    /// Puts the forces that steps applied in the place of those of the laws, or where there are none yet. The tension of links that are
     /// springs is that of their law, and reactions of chains that touch nothing are those of the state at t.
-    fn blend_forces(&self, t: f64, out: &mut Observation) {
-        let Some((share, [before, now])) = self.applied.around(t) else {
-            return;
-        };
+    fn blend_forces(&self, (share, ends): (f64, &[StepEnd; 2]), out: &mut Observation) {
+        let [before, now] = ends;
         for (index, list) in forces(out).into_iter().enumerate() {
             let [before, now] = [before, now].map(|end| end.lists[index].as_slice());
             let is_tension = index == LINK_TENSION;
             if !is_tension && !JOINT_FORCES.contains(&index) {
+                list.resize(now.len(), 0.0);
                 blended(share, before, now, list);
                 continue;
             }
@@ -481,88 +355,52 @@ impl System {
             out.oil_pressure.extend(slide.pressure(pose, at.z));
         }
     }
+}
 
-    /// The energy ledger of a state that `record` was evaluated at.
-    fn energy(&self, at: Moment<'_>, flows: &[f64], record: &Record) -> Energy {
-        let mut energy = Energy::default();
-        energy.flows.copy_from_slice(&flows[..Flow::ALL.len()]);
-        let bodies = &self.bodies;
-        for (flow, jumps) in [Flow::Driver, Flow::DriveTorque]
-            .into_iter()
-            .zip(bodies.inputs.jumps)
-        {
-            energy.flows[flow as usize] += jumps.until(at.t);
-        }
-        for (member, record) in self.chains.iter().zip(&record.chains) {
-            let own = member.own(at);
-            member
-                .chain
-                .energies(own, bodies.gravity, record, &mut energy);
-        }
-        let mut add = |store: Store, value: f64| energy.stores[store as usize] += value;
-        for wheel in &bodies.wheels {
-            let kinematics = wheel.kinematics(at.t, at.q, at.v);
-            let (centre, velocity, _) = wheel.centre_kinematics(at.t, at.q, at.v, &bodies.slides);
-            let moves = !matches!(wheel.support, WheelSupport::Fixed);
-            if wheel.inertia > 0.0 {
-                add(
-                    Store::Sprockets,
-                    0.5 * wheel.inertia * kinematics.rate * kinematics.rate,
-                );
+impl Observation {
+    /// Empties the lists of rollers, links and joints that nobody wants: whoever keeps a reading keeps none of them.
+    fn forget_all_but(&mut self, sights: Sights) {
+        let forget = |of: Sights, lists: &mut [&mut Vec<f64>]| {
+            if sights.has(of) {
+                return;
             }
-            // What a tensioner carries is in the tensioner's inertia and weights.
-            if moves && !matches!(wheel.support, WheelSupport::Carried(_)) {
-                add(Store::Sprockets, 0.5 * wheel.mass * velocity.norm_squared());
-                add(
-                    Store::Gravity,
-                    -wheel.mass * bodies.gravity.dot(&centre.coords),
-                );
+            for list in lists {
+                list.clear();
             }
-            if let WheelSupport::Springs { stiffness, .. } = &wheel.support {
-                for axis in 0..2 {
-                    let away = centre[axis] - wheel.centre[axis];
-                    add(Store::Supports, 0.5 * stiffness[axis] * away * away);
-                }
-            }
-        }
-        for (member, record) in self.chains.iter().zip(&record.chains) {
-            for (on, touch) in member.contacts.teeth.iter().zip(&record.loads.teeth) {
-                add(Store::Teeth, on.contacts.stored(touch));
-            }
-            for (i, on) in member.contacts.rails.iter().enumerate() {
-                let stored = match &on.contact {
-                    RailContact::Circles(contacts) => contacts.stored(&record.loads.rails[i]),
-                    RailContact::Plates(plates) => {
-                        let frame = bodies.rail_frame(on.rail, at);
-                        let own = member.own(at);
-                        member.chain.plate_energy(own, plates, &frame, record)
-                    }
-                };
-                add(Store::Guides, stored);
-            }
-        }
-        for shaft in bodies.shafts.iter().filter(|shaft| shaft.inertia > 0.0) {
-            let rate = shaft.turn.kinematics(at.t, at.q, at.v).rate;
-            add(Store::Sprockets, 0.5 * shaft.inertia * rate * rate);
-        }
-        for coupling in &bodies.couplings {
-            let [twist, _] = bodies.twist(coupling, at);
-            // U = ½ k φ²
-            add(Store::Supports, 0.5 * coupling.stiffness * twist * twist);
-        }
-        for slide in &bodies.slides {
-            let pose = slide.pose(at.q, at.v);
-            let ReducedInertia { inertia, .. } = slide.reduced(pose);
-            add(Store::Carriers, 0.5 * inertia * pose.rate * pose.rate);
-            add(Store::Tensioners, slide.stored(pose, at.z));
-            if slide.dof.is_some() {
-                for (mass, place) in slide.weights() {
-                    let (place, _) = slide.carry(pose, place);
-                    add(Store::Gravity, -mass * bodies.gravity.dot(&place.coords));
-                }
-            }
-        }
-        energy
+        };
+        forget(Sights::LAWS, &mut [&mut self.film_thickness]);
+        forget(Sights::SPANS, &mut [&mut self.span_tension]);
+        forget(
+            Sights::PLACES,
+            &mut [&mut self.roller_x, &mut self.roller_y],
+        );
+        forget(
+            Sights::VELOCITIES,
+            &mut [&mut self.roller_vx, &mut self.roller_vy],
+        );
+        forget(
+            Sights::STRANDS,
+            &mut [&mut self.strand_tension_max, &mut self.strand_tension_min],
+        );
+        forget(
+            Sights::JOINTS,
+            &mut [
+                &mut self.link_angle,
+                &mut self.joint_offset_x,
+                &mut self.joint_offset_y,
+                &mut self.joint_force_x,
+                &mut self.joint_force_y,
+                &mut self.joint_force,
+                &mut self.joint_angle,
+                &mut self.joint_depth,
+                &mut self.bush_offset_x,
+                &mut self.bush_offset_y,
+                &mut self.bush_force_x,
+                &mut self.bush_force_y,
+                &mut self.bush_force,
+                &mut self.bush_depth,
+            ],
+        );
     }
 }
 

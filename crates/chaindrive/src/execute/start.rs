@@ -7,7 +7,7 @@
 //! ```
 
 use chaindrive_integrate::{IntegrationError, Method};
-use chaindrive_mechanics::{Assembled, Drive};
+use chaindrive_mechanics::{Assembled, Drive, Sights};
 
 use super::RunError;
 use crate::describe::{foretelling, foretold};
@@ -131,13 +131,15 @@ impl Setup {
         begin(self.assembled.clone(), run, choice.is_some())
     }
 
-    /// Runs the drive in, and checks the choice of method and step there.
+    /// Runs the drive in, and checks the choice of method and step there. Samples that are taken on the way have these sights.
     pub(super) fn run_in(
         mut self,
         request: &Request,
+        sights: Sights,
         onlooker: &dyn Onlooker,
     ) -> Result<RunState, SimulationError> {
-        let mut record = record_start(self.assembled.clone(), &self.provenance.run, onlooker)?;
+        let run = &self.provenance.run;
+        let mut record = record_start(self.assembled.clone(), run, sights, onlooker)?;
         let mut estimate = None;
         if request.estimate && !self.is_verified && record.has_moved() {
             match check(&self.provenance, &record.start, onlooker)? {
@@ -149,7 +151,7 @@ impl Setup {
                     if !is_same_step {
                         // The scene of the result names the new step: a run of that scene is run in with it too.
                         let run = &self.provenance.run;
-                        record = record_start(self.assembled.clone(), run, onlooker)?;
+                        record = record_start(self.assembled.clone(), run, sights, onlooker)?;
                     }
                 }
                 Check::Unknown => {}

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use chaindrive_integrate::Statistics;
-use chaindrive_mechanics::{Assembled, Flow, Impact, Observation};
+use chaindrive_mechanics::{Assembled, Flow, Impact, Observation, Sights};
 use serde::{Deserialize, Serialize};
 
 use super::Watch;
@@ -152,6 +152,13 @@ impl Trace {
                     return Err(SimulationError::Interrupted);
                 }
             }
+            // Energies are compared over the whole run: those of its ends are read.
+            let ends = if self.time.is_empty() {
+                Sights::ENERGIES
+            } else {
+                Sights::default()
+            };
+            simulation.sample_only(Sights::SPANS.and(ends));
             let Some(sample) = simulation.next_sample()? else {
                 break;
             };

@@ -47,7 +47,8 @@ pub trait Sink {
         true
     }
 
-    /// Takes the last sample of the simulation.
+    /// Takes the last sample of the simulation. Its observation has what the channels told at the beginning need, energies and the motion of
+    /// bodies; lists of links and rollers that nobody asked for are empty, but in the last sample of a run.
     ///
     /// # Errors
     /// It cannot be written.

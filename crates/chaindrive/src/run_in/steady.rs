@@ -23,7 +23,7 @@ mod run_up;
 mod schedule;
 mod sums;
 
-use chaindrive_mechanics::{Assembled, Observation};
+use chaindrive_mechanics::{Assembled, Observation, Sights};
 
 use self::criterion::BlockSeries;
 use self::record_buffer::RecordBuffer;
@@ -37,20 +37,21 @@ pub(super) use self::schedule::{bounds, stands};
 /// Moves a drive until it is steady; one that stands, for torques to turn, first runs up.
 ///
 /// What was simulated becomes the record: it begins at the first state from the steady one on from which the drive has not been moved for longer than the
-/// record is to last.
+/// record is to last. Its samples have these sights.
 pub(super) fn steady_start(
     start: &Assembled,
     run: &Run,
+    sights: Sights,
     onlooker: &dyn Onlooker,
 ) -> Result<RecordStart, SimulationError> {
     if stands(start) {
         let moving = run_up::run_up(start, run, onlooker)?;
-        return steady_start(&moving, run, onlooker);
+        return steady_start(&moving, run, sights, onlooker);
     }
     let schedule = Schedule::of(start, run)?;
     let stop = || onlooker.stop();
     let mut series = BlockSeries::default();
-    let mut record = RecordBuffer::new(start, run, &stop)?;
+    let mut record = RecordBuffer::new(start, run, sights, &stop)?;
     loop {
         // One more block: tensions and creeping states are summed over looks at equal intervals.
         let begin = start.time + series.count as f64 * schedule.block;

@@ -107,12 +107,8 @@ impl Moving {
         state.states_at(time, &mut z);
         let (q, v, z) = (q.as_slice(), v.as_slice(), z.as_slice());
         let at = Moment { t: time, q, v, z };
-        let energies = Sights {
-            laws: true,
-            spans: false,
-        };
         let mut seen = Observation::default();
-        system.observe_some(energies, at, &quadratures, record, &mut seen);
+        system.observe_some(Sights::ENERGIES, at, &quadratures, record, &mut seen);
         PeriodEnd {
             time,
             energy: seen.energy,

@@ -1,15 +1,17 @@
 //! Samples, and those that were taken before anybody asked for them.
 
-use chaindrive_mechanics::{Assembled, ContactEvent, EventKinds, Impact, Observation};
+use std::mem::swap;
+
+use chaindrive_mechanics::{Assembled, ContactEvent, EventKinds, Impact, Observation, Sights};
 
 use super::ended_contacts::count_from;
 use super::live::Changes;
 use super::{Arc, Period, Simulation};
 use crate::interruptible::LOOK;
-use crate::{Run, SimulationError};
+use crate::{Channel, Run, SimulationError};
 
 /// All that a sample says, on the clock of the drive.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Sample {
     observation: Observation,
     ended: Vec<ContactEvent>,
@@ -19,19 +21,28 @@ pub(crate) struct Sample {
 }
 
 impl Simulation {
-    /// Reads everything off the state at a time \[s\] within the last step, and hands out what ended since the last reading.
-    pub(super) fn sample(&mut self, time: f64) {
-        self.observe(time);
+    /// Reads these sights at a time \[s\] within the last step, and hands out what ended since the last reading.
+    pub(super) fn sample(&mut self, sights: Sights, time: f64) {
+        self.observe_some(sights, time);
         self.hand_out_ended();
     }
 
-    /// Advances to a time \[s\] and takes a sample there; on request with the drive as it stood before the last step.
+    /// Numbers of a sample of all channels.
+    pub(crate) fn numbers(&mut self) -> usize {
+        self.observe(self.read);
+        let channels = Channel::ALL.iter();
+        channels.map(|it| self.channel(*it).len()).sum()
+    }
+
+    /// Advances to a time \[s\] and takes a sample there; on request with the drive as it stood before the last step. The room of a sample
+    /// that is no longer needed, `sample`, is that of the next one but one.
     pub(crate) fn take_sample(
         &mut self,
         time: f64,
         with_start: bool,
+        mut sample: Box<Sample>,
         stop: &dyn Fn() -> bool,
-    ) -> Result<(Sample, Option<Assembled>), SimulationError> {
+    ) -> Result<(Box<Sample>, Option<Assembled>), SimulationError> {
         let changes = if with_start {
             Changes::AtTheEnd
         } else {
@@ -47,14 +58,13 @@ impl Simulation {
             system.watch(None);
             self.assembled.come_to(system, &it.state)
         });
-        self.sample(time);
-        let sample = Sample {
-            observation: self.observation.clone(),
-            ended: self.ended[0].clone(),
-            struck: self.struck[0].clone(),
-            periods: self.periods[0].clone(),
-            readings: self.readings[0].clone(),
-        };
+        self.sample(self.sights, time);
+        // Nothing is copied: the lists change hands.
+        swap(&mut sample.observation, &mut self.observation);
+        swap(&mut sample.ended, &mut self.ended[0]);
+        swap(&mut sample.struck, &mut self.struck[0]);
+        swap(&mut sample.periods, &mut self.periods[0]);
+        swap(&mut sample.readings, &mut self.readings[0]);
         Ok((sample, start))
     }
 
@@ -63,7 +73,7 @@ impl Simulation {
         self,
         start: Assembled,
         run: &Run,
-        ahead: impl IntoIterator<Item = Sample>,
+        ahead: impl IntoIterator<Item = Box<Sample>>,
     ) -> Self {
         Self {
             assembled: Arc::new(start),
@@ -76,14 +86,14 @@ impl Simulation {
         }
     }
 
-    /// Advances to a time \[s\] and reads everything there; a change before that time is no longer possible.
+    /// Advances to a time \[s\] and reads tensions of spans and motions of bodies there; a change before that time is no longer possible.
     pub(crate) fn look(
         &mut self,
         time: f64,
         stop: &dyn Fn() -> bool,
     ) -> Result<&Observation, SimulationError> {
         self.go_to(time, Changes::None, stop)?;
-        self.observe(time);
+        self.observe_some(Sights::SPANS, time);
         Ok(&self.observation)
     }
 

@@ -75,12 +75,11 @@ impl Simulation {
                 name: absent.name(),
             });
         }
-        let sights = channels.iter().map(|it| it.sights());
         let mut view = View {
             channels: channels.to_vec(),
             ends: Vec::new(),
             values: Vec::new(),
-            sights: sights.fold(Sights::default(), Sights::and),
+            sights: Channel::sights_of(channels),
             seen: Observation::default(),
         };
         self.read_into(&mut view);
@@ -154,7 +153,9 @@ impl Simulation {
             )
         } else {
             state.at(clock, q, v);
-            state.quadratures_at(clock, flows);
+            if sights.has(Sights::ENERGIES) {
+                state.quadratures_at(clock, flows);
+            }
             state.states_at(clock, z);
             (Moment { t: clock, q, v, z }, flows.as_slice())
         };

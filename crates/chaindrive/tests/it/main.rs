@@ -43,6 +43,7 @@ mod robust_scenes;
 mod run_in;
 mod run_in_by_itself;
 mod said_once;
+mod samples;
 mod scenes;
 mod seat;
 mod several_chains;

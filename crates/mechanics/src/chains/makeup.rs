@@ -8,7 +8,7 @@ use chaindrive_integrate::{Moment, Weights};
 
 use super::series::Series;
 use crate::bodies::{GroupBodies, Surroundings};
-use crate::contact::{Frame, PlateContact};
+use crate::contact::{Frame, PlateContact, Touch};
 use crate::energy::Energy;
 use crate::seam::{Load, Loads, Moving, Observation, Pose, Rates, Sum, Unknown};
 
@@ -101,12 +101,12 @@ pub(crate) trait Makeup: Statics {
     fn plate_energy(
         &self,
         at: Moment<'_>,
-        plates: &PlateContact,
+        (plates, touch): (&PlateContact, &Touch),
         frame: &Frame,
         _work: &Self::Work,
     ) -> f64 {
         let pin = |link, end| self.pin_moving(at.q, link, end).place;
-        plates.stored(pin, frame, self.series().links)
+        plates.stored(pin, frame, touch)
     }
 
     /// Puts coordinates that are given in time where they are at t.

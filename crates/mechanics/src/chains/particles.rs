@@ -101,13 +101,18 @@ impl Particles {
         resistance: &Resistance,
         out: &mut Energy,
     ) {
-        let mut add = |store: Store, value: f64| out.stores[store as usize] += value;
-        for roller in 0..self.series.rollers {
+        let n = self.series.stride;
+        let columns = [&at.q[..n], &at.q[n..2 * n], &at.v[..n], &at.v[n..2 * n]];
+        let [mut kinetic, mut weight] =
+            [Store::Chain, Store::Gravity].map(|store| out.stores[store as usize]);
+        for roller in 0..self.series.rollers.min(n) {
             let mass = self.masses[roller];
-            let (place, velocity) = self.pin(at, roller);
-            add(Store::Chain, 0.5 * mass * velocity.norm_squared());
-            add(Store::Gravity, -mass * gravity.dot(&place.coords));
+            let [x, y, vx, vy] = columns.map(|column| column[roller]);
+            kinetic += 0.5 * mass * Vector::new(vx, vy).norm_squared();
+            weight += -mass * gravity.dot(&Vector::new(x, y));
         }
+        out.stores[Store::Chain as usize] = kinetic;
+        out.stores[Store::Gravity as usize] = weight;
         out.hold_in_joints(resistance.stored);
     }
 

@@ -16,7 +16,7 @@ use super::predicted::PredictedLane;
 use super::resting_lanes::Clear;
 use super::window::Places;
 use super::wrench::Sums;
-use super::{AWAKE, Frame, MemoryLanes, SurfaceLaw, Touch, Wrench};
+use super::{AWAKE, Frame, MemoryField, MemoryLanes, SurfaceLaw, Touch, Wrench};
 use crate::lanes::{LANES, Lane, Wide, padded};
 use crate::profile::{Probe, RailFace};
 use crate::surface::Surface;
@@ -487,25 +487,32 @@ impl PlateContact {
         }
     }
 
-    /// Sum of the elastic energies \[J\].
+    /// Sum of the elastic energies \[J\], where contacts were found as `touch` has them.
     pub(crate) fn stored(
         &self,
         pin: impl Fn(usize, usize) -> Point,
         frame: &Frame,
-        links: usize,
+        touch: &Touch,
     ) -> f64 {
-        (0..links)
-            .map(|link| {
+        let law = &self.surface.law;
+        // What stands open stores nothing: the face is looked at again where plates touch, or are about to.
+        let gaps = touch.state.each(MemoryField::Gap).take(self.links);
+        let close = gaps.enumerate().filter(|(_, gap)| *gap < CLEAR);
+        close
+            .map(|(link, _)| {
                 let [a, b] = [0, 1].map(|end| frame.local(pin(link, end), self.reference));
                 if self.far(a) && self.far(b) {
                     return 0.0;
                 }
                 let point = self.nearest(a, b);
-                point.weight * self.surface.law.energy(-point.probe.gap)
+                point.weight * law.energy(-point.probe.gap)
             })
             .sum()
     }
 }
+
+/// Gap \[m\] from which on a plate is open, however it is rounded.
+const CLEAR: f64 = 1e-9;
 
 impl<S: Simd> LanePlatePoint<S> {
     /// The nearer of two; the other where both are as near.

@@ -2,12 +2,12 @@
 
 use std::collections::VecDeque;
 
-use chaindrive_mechanics::{Assembled, Observation};
+use chaindrive_mechanics::{Assembled, Observation, Sights};
 
 use super::counted;
 use crate::run_in::{RecordStart, RunInReport};
 use crate::simulate::Sample;
-use crate::{Channel, Run, RunIn, Simulation, SimulationError};
+use crate::{Run, RunIn, Simulation, SimulationError};
 
 /// Restart points that are kept at most, and a few more: each has a copy of the drive, and among so many one is near enough.
 const MOST_STARTS: usize = 32;
@@ -27,8 +27,10 @@ pub(super) struct RecordBuffer<'a> {
     /// By block, as far as they are kept; the last one is taken with the next sample.
     starts: Vec<Option<Restart>>,
     /// The last samples, and how many were taken before them.
-    samples: VecDeque<Sample>,
+    samples: VecDeque<Box<Sample>>,
     before: usize,
+    /// The one that was forgotten last, for its room.
+    spare: Box<Sample>,
     /// Samples that are kept at most.
     most: usize,
 }
@@ -37,6 +39,7 @@ impl<'a> RecordBuffer<'a> {
     pub(super) fn new(
         start: &Assembled,
         run: &'a Run,
+        sights: Sights,
         stop: &'a dyn Fn() -> bool,
     ) -> Result<Self, SimulationError> {
         let plain = Run {
@@ -45,9 +48,10 @@ impl<'a> RecordBuffer<'a> {
         };
         let from = start.time;
         let mut simulation = Simulation::from_assembled(start.clone(), &plain)?;
-        let first = simulation.take_sample(from, false, stop)?.0;
-        let numbers = Channel::ALL.iter().map(|it| simulation.channel(*it).len());
-        let bytes = size_of::<f64>() * numbers.sum::<usize>();
+        // Where a record begins does not hang on what it records.
+        let bytes = size_of::<f64>() * simulation.numbers();
+        simulation.sample_only(sights);
+        let first = simulation.take_sample(from, false, Box::default(), stop)?.0;
         let wanted = counted(run.until / run.every + 1.0);
         Ok(Self {
             simulation,
@@ -57,6 +61,7 @@ impl<'a> RecordBuffer<'a> {
             starts: vec![Some((start.clone().recorded_from(from), 0))],
             samples: VecDeque::from([first]),
             before: 0,
+            spare: Box::default(),
             most: wanted.min(ROOM / bytes.max(1)).max(1),
         })
     }
@@ -79,13 +84,14 @@ impl<'a> RecordBuffer<'a> {
         let number = self.before + self.samples.len();
         let time = self.next();
         let due = self.starts.last().is_some_and(Option::is_none);
-        let (sample, start) = self.simulation.take_sample(time, due, self.stop)?;
+        let spare = std::mem::take(&mut self.spare);
+        let (sample, start) = self.simulation.take_sample(time, due, spare, self.stop)?;
         if let (Some(start), Some(last)) = (start, self.starts.last_mut()) {
             *last = Some((start.recorded_from(time), number));
         }
         self.samples.push_back(sample);
         if self.samples.len() > self.most {
-            self.samples.pop_front();
+            self.spare = self.samples.pop_front().unwrap_or_default();
             self.before += 1;
         }
         Ok(())

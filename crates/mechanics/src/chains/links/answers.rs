@@ -8,7 +8,7 @@ use super::{Hinges, Joining, Linkage, Work};
 use crate::bodies::{GroupBodies, Surroundings};
 use crate::chains::makeup::Makeup;
 use crate::chains::series::Series;
-use crate::contact::{Frame, PlateContact};
+use crate::contact::{Frame, PlateContact, Touch};
 use crate::energy::Energy;
 use crate::seam::{Loads, Observation, Pose, Rates};
 
@@ -111,13 +111,13 @@ impl Makeup for Linkage {
     fn plate_energy(
         &self,
         _at: Moment<'_>,
-        plates: &PlateContact,
+        (plates, touch): (&PlateContact, &Touch),
         frame: &Frame,
         work: &Work,
     ) -> f64 {
         let posture = &work.joint_state.posture;
         let pin = |link, end| posture.tip(link, end).place;
-        plates.stored(pin, frame, self.series.links)
+        plates.stored(pin, frame, touch)
     }
 
     fn damps_stiffly(&self, touches: bool) -> bool {
