@@ -361,8 +361,11 @@ impl Observation {
     /// Empties the lists of rollers, links and joints that nobody wants: whoever keeps a reading keeps none of them.
     fn forget_all_but(&mut self, sights: Sights) {
         let forget = |of: Sights, lists: &mut [&mut Vec<f64>]| {
-            if !sights.has(of) {
-                lists.iter_mut().for_each(|list| list.clear());
+            if sights.has(of) {
+                return;
+            }
+            for list in lists {
+                list.clear();
             }
         };
         forget(Sights::LAWS, &mut [&mut self.film_thickness]);
