@@ -173,8 +173,11 @@ def test_missing_extras_are_told_before_the_work(run, module, tmp_path, monkeypa
 
 #: A process that is ended under way: it tells when it begins, and makes a file over and over.
 UNDER_WAY = """
+import signal
 import sys
 import chaindrive as cd
+# A shell that starts tests in the background has it ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 sys.path.insert(0, {here!r})
 from test_new_files import MAKERS
 from chaindrive.signals import hear

@@ -77,11 +77,14 @@ impl Schedule {
 
     /// Blocks after which the first beginning may be found steady.
     fn fewest(&self) -> usize {
-        let is_enough = |n: &usize| n - earliest(*n) >= self.least;
-        (self.least..=2 * self.least)
-            .find(is_enough)
-            .unwrap_or(self.least)
+        fewest(self.least)
     }
+}
+
+/// The fewest blocks n that leave so many, at least one, from the [earliest](earliest) beginning on: n − ⌊n/4⌋ ≥ least.
+fn fewest(least: usize) -> usize {
+    // A soft and thick dashpot asks for 10²⁰ blocks.
+    least.saturating_add((least - 1) / (EARLIEST - 1))
 }
 
 /// The first block from which a motion of some blocks may still be found steady.
@@ -102,4 +105,18 @@ pub(in crate::run_in) fn bounds(start: &Assembled, run: &Run) -> Result<[f64; 2]
 /// A drive at rest with closed chains, for torques to turn.
 pub(in crate::run_in) fn stands(start: &Assembled) -> bool {
     start.slowest_circuit().is_infinite() && start.slowest_tooth() > 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fewest_blocks_are_those_that_a_search_finds() {
+        for least in 1..200 {
+            let found = (least..).find(|n| n - earliest(*n) >= least);
+            assert_eq!(Some(fewest(least)), found);
+        }
+        assert_eq!(fewest(usize::MAX), usize::MAX);
+    }
 }
