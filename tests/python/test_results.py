@@ -443,10 +443,9 @@ def test_a_slack_chain_without_gravity_is_refused_soon() -> None:
             ],
         }
     )
-    begin = time.process_time()
-    with pytest.raises(cd.AssemblyError, match="raise the pretension"):
+    # Fewer iterations than a search downhill makes before it is given up.
+    with pytest.raises(cd.AssemblyError, match=r"after 1?\d{4} iterations.*raise the pretension"):
         drive.describe()
-    assert time.process_time() - begin < 10
 
 
 def test_an_interrupted_run_keeps_what_there_is():

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mutants import damaged
 
 import chaindrive as cd
 from chaindrive.errors import ChaindriveError
@@ -228,20 +229,7 @@ def damage(place: Path, lot: random.Random, times: int, opened: Callable[[Path],
         )
         file = lot.choice(files)
         held = bytearray(file.read_bytes())
-        match lot.randrange(4):
-            case 0:
-                del held[lot.randrange(len(held) + 1) :]
-            case 1:
-                for _ in range(lot.randint(1, 8)):
-                    held[lot.randrange(len(held))] = lot.randrange(256)
-            case 2:
-                at = lot.randrange(len(held) + 1)
-                held[at:at] = bytes(lot.randrange(32, 127) for _ in range(lot.randint(1, 20)))
-            case 3:
-                digits = [at for at, it in enumerate(held) if chr(it).isdigit()] or [0]
-                at = lot.choice(digits)
-                held[at : at + 1] = b"9" * lot.randint(1, 12)
-        file.write_bytes(held)
+        file.write_bytes(damaged(held, lot))
         begun = time.monotonic()
         with suppress(ChaindriveError, ValueError, FileNotFoundError):
             opened(place)

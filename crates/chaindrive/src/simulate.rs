@@ -245,12 +245,12 @@ impl Simulation {
         self.sights = sights;
     }
 
-    /// Whether the next sample is the last.
+    /// One sample is left at most.
     pub(crate) fn is_at_last_sample(&self) -> bool {
         !self.has_sample(self.next + 1)
     }
 
-    /// Whether there is a sample of a number.
+    /// Sample number k, counted from 0, lies within the record: k Δt ≤ end.
     fn has_sample(&self, number: u64) -> bool {
         number as f64 * self.every <= self.until * (1.0 + 1e-12)
     }

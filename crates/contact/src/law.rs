@@ -121,8 +121,7 @@ impl Law {
         self.stack().energy(penetration)
     }
 
-    /// Stored energies \[J\] of several contacts at a time: those of [`energy`](Self::energy) to the last bit, several times as fast where
-    /// Hertz's law has a spring behind it.
+    /// Stored energies \[J\] of several contacts at a time: those of [`energy`](Self::energy) to the last bit.
     #[inline]
     pub fn energies<const N: usize>(&self, penetrations: [f64; N]) -> [f64; N] {
         self.stack().energies(penetrations)

@@ -42,7 +42,7 @@ pub trait Sink {
         true
     }
 
-    /// Whether what the result says about itself is kept; otherwise its attributes are not made, and are empty.
+    /// Whether it keeps the attributes of the result; otherwise they are empty.
     fn keeps_attributes(&self) -> bool {
         true
     }

@@ -27,7 +27,7 @@ fn recorded(scene: &Scene, settings: [(&str, &str); 3], names: &str) -> (Report,
     ran(scene, &[&settings[..], &[("record", names)]].concat())
 }
 
-/// What else is recorded changes no bit of a channel, in a run-in that becomes the record as little as elsewhere.
+/// Other channels of a record change no bit of a channel, even where the run-in becomes the record.
 #[test]
 fn a_channel_is_the_same_alone_and_among_all() {
     let short = [("until", "1 ms"), ("every", "50 us"), ("run_in", "0 s")];

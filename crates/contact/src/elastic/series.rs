@@ -148,7 +148,7 @@ impl Stack {
     }
 }
 
-/// Whether a step goes on from x: it ceases to come down where rounding begins.
+/// The iteration comes down from x until rounding begins.
 #[inline]
 fn comes_down(x: f64, next: f64) -> bool {
     next < x * (1.0 - FOUND) && next > 0.0
@@ -158,7 +158,7 @@ fn comes_down(x: f64, next: f64) -> bool {
 mod tests {
     use super::*;
 
-    /// Whatever stands beside a contact, and with every kind of law.
+    /// Neighbours of a contact, and kinds of law, change no bit.
     #[test]
     fn energies_side_by_side_are_those_of_one() {
         let depth = |i: usize| 1e-9 * 10.0_f64.powf(0.17 * i as f64);

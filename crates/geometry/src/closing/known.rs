@@ -1,8 +1,7 @@
 //! Closings that were found before, to the bit.
 //!
 //! A search for a strain or a travel marches some hundred times around the wheels, and the next variant of a drive, with another load
-//! or pretension, marches the same ways. A closing depends on nothing but its wheels, pitch and phase, so the answer of before is the
-//! answer.
+//! or pretension, marches the same ways. A closing depends on nothing but its wheels, pitch and phase.
 
 use std::collections::HashMap;
 use std::sync::{LazyLock, Mutex, PoisonError};
@@ -16,7 +15,7 @@ const MOST: usize = 16_384;
 
 static KNOWN: LazyLock<Mutex<HashMap<Box<[u64]>, Closing>>> = LazyLock::new(Mutex::default);
 
-/// What was found before for exactly these wheels, pitch and phase, or else what `find` finds.
+/// The closing of these wheels, pitch and phase, to the bit: from before, or by `find`.
 pub(super) fn known(
     wheels: &[Wheel],
     pitch: f64,

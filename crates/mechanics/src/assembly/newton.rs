@@ -54,7 +54,7 @@ const LEAST_SHARE: f64 = 1e-3;
 
 /// Brings `q` into equilibrium: pretension first, then gravity, then load.
 ///
-/// A chain that no path of equilibria leads to goes downhill, which may take long; `hopeless` says before that why it need not try.
+/// Where no path of equilibria leads there, the chain goes downhill, which may take long, unless `hopeless` names a reason not to try.
 pub(super) fn settle(
     system: &mut System,
     q: &mut Vec<f64>,
@@ -180,9 +180,9 @@ struct Unknowns {
     /// State entry → row.
     row: Vec<Option<usize>>,
     count: usize,
-    /// Where the rows of turning shafts begin, after those of chains.
+    /// First row of turning shafts, after those of chains.
     turns: usize,
-    /// Where the rows of centres and tensioners begin, the last ones.
+    /// First row of centres and tensioners, the last ones.
     places: usize,
     /// Squared lever \[m²\] that turns the row's unit into metres: 1 for rollers, R² for angles.
     scale: Vec<f64>,
@@ -255,7 +255,7 @@ struct Newton<'a> {
     system: &'a mut System,
     unknowns: &'a Unknowns,
     record: Record,
-    /// Where everything stood when the contact windows were laid.
+    /// State for which the contact windows were laid.
     looked: Vec<f64>,
 }
 

@@ -202,7 +202,7 @@ impl BodyContacts {
         self.teeth.iter().map(|on| &on.contacts).chain(rails)
     }
 
-    /// Hands `visit` for every body, with its index if it is a sprocket, how far \[m\] a roller or pin at a place is at least from touching it.
+    /// Visits every body with its least distance \[m\] from touching, as a function of the place of a roller or pin, and its index if it is a sprocket.
     pub(crate) fn each_room(
         &self,
         bodies: &Bodies,

@@ -188,12 +188,12 @@ impl PlateContact {
         self.beyond(p) > 0.0
     }
 
-    /// How far \[m\] a pin at a place is at least from where its plates may touch; nothing or less there.
+    /// Least distance \[m\] of a pin at a place from touching with its plates; nothing or less where they may touch.
     pub(crate) fn room(&self, frame: &Frame, place: Point) -> f64 {
         self.beyond(frame.local(place, self.reference))
     }
 
-    /// How much farther \[m\] a place in the face's coordinates is from its box than a plate reaches.
+    /// Distance \[m\] of a place in the face's coordinates from its box, less the reach of a plate.
     fn beyond(&self, p: Point) -> f64 {
         let beside = |axis: usize| {
             f64::max(

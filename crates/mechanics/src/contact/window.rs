@@ -89,7 +89,7 @@ impl Contacts {
         &self.runs
     }
 
-    /// How far \[m\] a roller at a place is at least from touching; nothing or less where it may touch.
+    /// Least distance \[m\] of a roller at a place from touching; nothing or less where it may touch.
     pub(crate) fn room(&self, frame: &Frame, place: Point) -> f64 {
         let d = place - frame.centre();
         match &self.shape {

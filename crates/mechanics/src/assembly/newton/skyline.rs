@@ -17,7 +17,7 @@ use std::ops::Range;
 pub(super) struct Skyline {
     /// First column of every row.
     first: Vec<usize>,
-    /// Where the diagonals stand among the values.
+    /// Places of the diagonals among the values.
     diagonal: Vec<usize>,
     values: Vec<f64>,
 }
@@ -55,7 +55,7 @@ impl Skyline {
         }
     }
 
-    /// Where the columns of a row stand among the values, from one of them to before another.
+    /// Places of columns of a row among the values.
     fn columns(&self, row: usize, columns: Range<usize>) -> Range<usize> {
         let behind = self.diagonal[row] + columns.start - row;
         behind..behind + columns.len()
@@ -87,13 +87,13 @@ impl Skyline {
         let rows = self.first.iter().zip(&self.diagonal);
         // L y = b, and then Lᵀ x = y.
         for (i, (&first, &diagonal)) in rows.clone().enumerate() {
-            let row = &self.values[diagonal + first - i..diagonal];
+            let row = &self.values[self.columns(i, first..i)];
             x[i] = (x[i] - dot(row, &x[first..i])) / self.values[diagonal];
         }
         for (i, (&first, &diagonal)) in rows.enumerate().rev() {
             x[i] /= self.values[diagonal];
             let (before, from) = x.split_at_mut(i);
-            let row = &self.values[diagonal + first - i..diagonal];
+            let row = &self.values[self.columns(i, first..i)];
             for (x, value) in before[first..].iter_mut().zip(row) {
                 *x -= value * from[0];
             }

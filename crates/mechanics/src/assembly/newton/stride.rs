@@ -1,10 +1,10 @@
 //! How far a step of Newton's method may go, and the way that it goes.
 //!
-//! The step is a straight one. A roller on a sprocket that turns by φ goes along a circle, and would leave its seat by R φ²/2. So rollers
-//! near a sprocket ride on it, and what they may go is counted from there:
+//! A step is straight, and would lead a roller out of its seat by R φ²/2 where its sprocket turns by φ. So rollers near a sprocket ride
+//! on it along a circle, and their way over the teeth is the rest of their step:
 //!
 //! ```text
-//! x⁺ = c⁺ + R(φ) (x − c) + s − φ ẑ × (x − c) − (c⁺ − c)     s: the step of the roller, c: centre of the sprocket
+//! x⁺ = c + R(φ) (x − c) + s − φ ẑ × (x − c)     s: the step of the roller, c: centre of the sprocket
 //! ```
 
 use chaindrive_geometry::{Point, Vector};
@@ -21,7 +21,7 @@ const SLIP: f64 = 0.2;
 /// which the linear step does not know of.
 const TURN: f64 = 0.2;
 
-/// How the sprocket that a roller is near to moves in a step.
+/// Motion of a sprocket in a step, and the rollers near it.
 struct Ride {
     wheel: usize,
     centre: Point,
@@ -33,7 +33,7 @@ struct Ride {
 }
 
 impl Ride {
-    /// What the step itself makes of a roller that rides along.
+    /// Straight step of a roller that rides along.
     fn straight(&self, place: Point) -> Vector {
         let arm = place - self.centre;
         self.shift + Vector::new(-arm.y, arm.x) * self.turn
@@ -48,7 +48,7 @@ impl Ride {
 }
 
 impl Newton<'_> {
-    /// How far \[m\] anything has moved since the contact windows were laid.
+    /// Longest way \[m\] of anything since the contact windows were laid.
     pub(super) fn moved(&self, q: &[f64]) -> f64 {
         let unknowns = self.unknowns;
         let both = q.iter().zip(&self.looked).zip(&unknowns.row);
@@ -58,14 +58,14 @@ impl Newton<'_> {
         moved.fold(0.0, f64::max)
     }
 
-    /// Share of a step from `q`, at most all of it, in which nothing goes too far, or farther than a part of that.
+    /// Share of a step from `q`, at most all of it, that leads nothing too far, or farther than a part of that.
     ///
     /// Rollers near a body go no farther over it than a fifth of a radius, others half of their way to the nearest body, and no link or
     /// sprocket turns by more than [`TURN`]: a long span reaches its sag in a few steps.
     pub(super) fn share(&self, q: &[f64], step: &[f64], part: f64) -> f64 {
         let unknowns = self.unknowns;
         let (longest, turn) = (part * self.longest(), part * TURN);
-        // How many times too far anything goes.
+        // By how many times anything goes too far.
         let mut over = 1.0_f64;
         for (row, step) in step.iter().enumerate().skip(unknowns.turns) {
             over = over.max(if row < unknowns.places {
@@ -77,38 +77,51 @@ impl Newton<'_> {
         let still = vec![0.0; q.len()];
         let at = Moment::stateless(self.system.begin, q, &still);
         for member in &self.system.chains {
-            let moves = self.moves(member, q, step);
-            let mut ridden = vec![None; moves.len()];
-            for ride in self.rides(member, at, step) {
-                over = over.max(ride.turn.abs() / turn);
-                for &roller in &ride.rollers {
-                    let (place, shift) = moves[roller];
-                    over = over.max((shift - ride.straight(place)).norm() / longest);
-                    ridden[roller] = Some(ride.wheel);
-                }
-            }
-            // Those that go far, and how far they are from the nearest body that they do not ride on.
-            let far = (0..moves.len()).filter(|&roller| moves[roller].1.norm() > longest);
-            let mut far: Vec<_> = far.map(|roller| (roller, f64::INFINITY)).collect();
-            if !far.is_empty() {
-                let bodies = &self.system.bodies;
-                member.contacts.each_room(bodies, at, |wheel, room| {
-                    for (roller, least) in &mut far {
-                        if wheel.is_none() || wheel != ridden[*roller] {
-                            *least = least.min(room(moves[*roller].0));
-                        }
-                    }
-                });
-            }
-            for (roller, room) in far {
-                over = over.max(moves[roller].1.norm() / longest.max(0.5 * room));
-            }
-            for link in 0..member.chain.links() {
-                let across = moves[(link + 1) % moves.len()].1 - moves[link].1;
-                over = over.max(across.norm() / (turn * member.chain.pitch()));
-            }
+            over = over.max(self.over(member, at, step, [longest, turn]));
         }
         1.0 / over
+    }
+
+    /// By how many times the rollers and links of a chain go too far.
+    fn over(
+        &self,
+        member: &Member,
+        at: Moment<'_>,
+        step: &[f64],
+        [longest, turn]: [f64; 2],
+    ) -> f64 {
+        let mut over = 0.0_f64;
+        let moves = self.moves(member, at.q, step);
+        let mut ridden = vec![None; moves.len()];
+        for ride in self.rides(member, at, step) {
+            over = over.max(ride.turn.abs() / turn);
+            for &roller in &ride.rollers {
+                let (place, shift) = moves[roller];
+                over = over.max((shift - ride.straight(place)).norm() / longest);
+                ridden[roller] = Some(ride.wheel);
+            }
+        }
+        // Rollers that go far, and their room to the nearest body that they do not ride on.
+        let far = (0..moves.len()).filter(|&roller| moves[roller].1.norm() > longest);
+        let mut far: Vec<_> = far.map(|roller| (roller, f64::INFINITY)).collect();
+        if !far.is_empty() {
+            let bodies = &self.system.bodies;
+            member.contacts.each_room(bodies, at, |wheel, room| {
+                for (roller, least) in &mut far {
+                    if wheel.is_none() || wheel != ridden[*roller] {
+                        *least = least.min(room(moves[*roller].0));
+                    }
+                }
+            });
+        }
+        for (roller, room) in far {
+            over = over.max(moves[roller].1.norm() / longest.max(0.5 * room));
+        }
+        for link in 0..member.chain.links() {
+            let across = moves[(link + 1) % moves.len()].1 - moves[link].1;
+            over = over.max(across.norm() / (turn * member.chain.pitch()));
+        }
+        over
     }
 
     /// Goes a share of a step, on circles where rollers ride on sprockets.
@@ -143,7 +156,7 @@ impl Newton<'_> {
         SLIP * smallest.unwrap_or_else(|| self.system.pitch())
     }
 
-    /// Where the rollers are, and how far the step leads them.
+    /// Places of the rollers, and their steps.
     fn moves(&self, member: &Member, q: &[f64], step: &[f64]) -> Vec<(Point, Vector)> {
         let (own, first) = (&q[member.entries.clone()], member.entries.start);
         let rollers = (0..member.chain.rollers()).map(|roller| {
@@ -155,7 +168,7 @@ impl Newton<'_> {
         rollers.collect()
     }
 
-    /// How the sprockets of a chain move, and who rides on them.
+    /// Motions of the sprockets of a chain.
     fn rides(&self, member: &Member, at: Moment<'_>, step: &[f64]) -> Vec<Ride> {
         let bodies = &self.system.bodies;
         let teeth = member.contacts.teeth.iter().map(|on| {
