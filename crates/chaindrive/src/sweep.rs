@@ -303,11 +303,9 @@ impl Sweep {
     /// # Errors
     /// Values that do not go together.
     pub fn variant(&self, index: usize) -> Result<Scene, SceneError> {
-        let mut scene = self.scene.clone();
-        for (dimension, at) in self.dimensions.iter().zip(self.indices(index)) {
-            scene = dimension.settings[at].put(&scene, &dimension.path)?;
-        }
-        Ok(scene)
+        let dimensions = self.dimensions.iter().zip(self.indices(index));
+        let edits = dimensions.map(|(it, at)| it.settings[at].edit(&self.scene, &it.path));
+        self.scene.put(&edits.collect::<Result<Vec<_>, _>>()?)
     }
 
     /// A variant in words: `speed = 300 rad/s, pretension = 10000 N`; numbers have five digits.

@@ -3,6 +3,9 @@
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
+/// Characters of a text that a message shows.
+const MOST_SHOWN: usize = 60;
+
 /// A text without characters that command a terminal, are not seen or turn the order of reading: those are spelled, `\u{1b}`. Lines and
 /// tabs stay.
 ///
@@ -83,10 +86,18 @@ pub(crate) fn is_strange(character: char) -> bool {
     is_command(character) || matches!(character, '\n' | '\t')
 }
 
+/// Nothing but letters, digits, signs and spaces of ASCII: most texts, told apart at once.
+pub(crate) fn is_plain(text: &str) -> bool {
+    text.bytes().all(|byte| (b' '..=b'~').contains(&byte))
+}
+
 /// A text cut to what fits in a message, on one line.
 pub(crate) fn shorten(text: &str) -> String {
+    if text.len() <= MOST_SHOWN && is_plain(text) {
+        return text.to_owned();
+    }
     let clean = text.chars().map(|c| if is_strange(c) { ' ' } else { c });
-    let mut short: String = clean.take(60).collect();
+    let mut short: String = clean.take(MOST_SHOWN).collect();
     if short.chars().count() < text.chars().count() {
         short.push('…');
     }

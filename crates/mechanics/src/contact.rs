@@ -264,15 +264,22 @@ impl Contacts {
             .zip(state.each(MemoryField::Share));
         let mut closed = contacts.filter(|(gap, _)| *gap < 0.0);
         let batches = std::iter::from_fn(|| {
-            // Where there are fewer than eight, the rest is as deep as none of them and counts for nothing.
-            let (mut depths, mut shares, mut count) = ([SHALLOW; LANES], [0.0; LANES], 0);
+            // A contact is open to a law that has no part in it, and so are those that eight lack.
+            let [mut in_seat, mut on_flank, mut shares] = [[0.0; LANES]; 3];
+            let mut count = 0;
             for (gap, share) in closed.by_ref().take(LANES) {
-                (depths[count], shares[count]) = (-gap, share);
+                if of_flank.is_none() || share < 1.0 {
+                    in_seat[count] = -gap;
+                }
+                if share > 0.0 {
+                    on_flank[count] = -gap;
+                }
+                shares[count] = share;
                 count += 1;
             }
-            let mut stored = law.energies(depths);
+            let mut stored = law.energies(in_seat);
             if let Some(of_flank) = &of_flank {
-                let on_flank = of_flank.energies(depths);
+                let on_flank = of_flank.energies(on_flank);
                 for ((stored, share), on_flank) in stored.iter_mut().zip(shares).zip(on_flank) {
                     *stored = (1.0 - share) * *stored + share * on_flank;
                 }

@@ -19,17 +19,7 @@ impl Scene {
     /// # Errors
     /// A path that leads nowhere; otherwise those of [`Scene::from_text`].
     pub fn replace(&self, path: &str, value: &str) -> Result<Self, SceneError> {
-        let deep = |problem| SceneError::new(&self.name, vec![problem]);
-        limits::check_toml(value).map_err(deep)?;
-        let toml = value
-            .trim()
-            .parse::<Toml>()
-            .unwrap_or_else(|_| Toml::from(value.trim()));
-        if is_json(&self.text) {
-            self.put(path, &json_of(&toml), toml)
-        } else {
-            self.put(path, &Json::Null, toml)
-        }
+        self.put(&[self.edit(path, value)?])
     }
 
     /// The scene with one value replaced by a JSON value, checked anew; see [`Scene::replace`].
@@ -37,10 +27,7 @@ impl Scene {
     /// # Errors
     /// A path that leads nowhere, or a JSON `null`; otherwise those of [`Scene::from_text`].
     pub fn replace_json(&self, path: &str, value: &Json) -> Result<Self, SceneError> {
-        match toml_of(value) {
-            Some(toml) => self.put(path, value, toml),
-            None => Err(self.refuse(path, "`null` is not a value", None)),
-        }
+        self.put(&[self.edit_json(path, value)?])
     }
 
     /// The scene without the value at a path, checked anew; the scene as it is if there is none.
@@ -64,42 +51,81 @@ impl Scene {
                 .ok_or_else(|| self.refuse(path, "nothing can be left out here", None))?;
             document.to_string()
         };
-        self.edited(&text, &keys)
+        self.edited(&text, &[keys])
     }
 
-    /// This scene with another text, which differs at the end of a path.
+    /// This scene with another text, which differs at the ends of these ways.
     ///
     /// Places stay those of the text that was read, which is the one that a user has before his eyes; what has been put there has none.
-    fn edited(&self, text: &str, keys: &[Key]) -> Result<Self, SceneError> {
+    fn edited(&self, text: &str, ways: &[Vec<Key>]) -> Result<Self, SceneError> {
         let tree = Node::parse(text)
             .map_err(|problem| SceneError::new(&self.name, vec![problem]).nowhere());
         let mut tree = tree?;
         tree.take_places(Some(&self.tree));
-        let changed = keys.iter().try_fold(&mut tree, |node, key| match key {
-            Key::Index(index) => node.entry_mut(*index),
-            Key::Name(name) => node.get_mut(name),
-        });
-        if let Some(changed) = changed {
-            changed.take_places(None);
+        for keys in ways {
+            let changed = keys.iter().try_fold(&mut tree, |node, key| match key {
+                Key::Index(index) => node.entry_mut(*index),
+                Key::Name(name) => node.get_mut(name),
+            });
+            if let Some(changed) = changed {
+                changed.take_places(None);
+            }
         }
         Self::from_tree(tree, text, &self.source())
     }
 
-    fn put(&self, path: &str, json: &Json, toml: Toml) -> Result<Self, SceneError> {
-        let keys = self.keys(path)?;
+    /// An edit by a text, as [`replace`](Self::replace) reads it.
+    pub(crate) fn edit(&self, path: &str, value: &str) -> Result<Edit, SceneError> {
+        let deep = |problem| SceneError::new(&self.name, vec![problem]);
+        limits::check_toml(value).map_err(deep)?;
+        let toml = value.trim().parse::<Toml>();
+        Ok(Edit {
+            path: path.to_owned(),
+            value: toml.unwrap_or_else(|_| Toml::from(value.trim())),
+        })
+    }
+
+    /// An edit by a JSON value, as [`replace_json`](Self::replace_json) takes it.
+    pub(crate) fn edit_json(&self, path: &str, value: &Json) -> Result<Edit, SceneError> {
+        let path = path.to_owned();
+        match toml_of(value) {
+            Some(value) => Ok(Edit { path, value }),
+            None => Err(self.refuse(&path, "`null` is not a value", None)),
+        }
+    }
+
+    /// The scene with several values put, one after the other, checked anew at the end.
+    pub(crate) fn put(&self, edits: &[Edit]) -> Result<Self, SceneError> {
+        let mut ways: Vec<Vec<Key>> = Vec::new();
+        for (count, edit) in edits.iter().enumerate() {
+            let keys = self.keys(&edit.path)?;
+            // What lies in a value that is put is found there alone.
+            if ways.iter().any(|way| keys.starts_with(way)) {
+                return self.put(&edits[..count])?.put(&edits[count..]);
+            }
+            ways.push(keys);
+        }
+        let both = || edits.iter().zip(&ways);
+        let nowhere = |edit: &Edit| {
+            let hint = "give the path of a table or a value, such as `chain.links`";
+            self.refuse(&edit.path, "nothing can be put here", Some(hint.into()))
+        };
         let text = if is_json(&self.text) {
             let mut root: Json = serde_json::from_str(&self.text).unwrap_or_default();
-            put_json(&mut root, &keys, json)
-                .ok_or_else(|| self.refuse(path, "nothing can be put here", Some(PUT.into())))?;
+            for (edit, keys) in both() {
+                put_json(&mut root, keys, json_of(&edit.value)).ok_or_else(|| nowhere(edit))?;
+            }
             format!("{root:#}\n")
         } else {
             let text = self.text.strip_prefix('\u{feff}').unwrap_or(&self.text);
             let mut document: DocumentMut = text.parse().unwrap_or_default();
-            put_toml(document.as_item_mut(), &keys, toml)
-                .ok_or_else(|| self.refuse(path, "nothing can be put here", Some(PUT.into())))?;
+            for (edit, keys) in both() {
+                let value = edit.value.clone();
+                put_toml(document.as_item_mut(), keys, value).ok_or_else(|| nowhere(edit))?;
+            }
             document.to_string()
         };
-        self.edited(&text, &keys)
+        self.edited(&text, &ways)
     }
 
     fn refuse(&self, path: &str, message: &str, hint: Option<String>) -> SceneError {
@@ -139,9 +165,13 @@ impl Scene {
     }
 }
 
-/// Remedy for a path that goes on past a value.
-const PUT: &str = "give the path of a table or a value, such as `chain.links`";
+/// A value that is to be put at a path of a scene.
+pub(crate) struct Edit {
+    path: String,
+    value: Toml,
+}
 
+#[derive(PartialEq)]
 enum Key {
     Name(String),
     Index(usize),
@@ -159,7 +189,7 @@ fn name_of(node: &Node) -> Option<&str> {
     }
 }
 
-fn put_json(root: &mut Json, keys: &[Key], value: &Json) -> Option<()> {
+fn put_json(root: &mut Json, keys: &[Key], value: Json) -> Option<()> {
     let mut place = root;
     if leads_into_chain(keys)
         && let Some(named) = place.get_mut("chain").filter(|chain| chain.is_string())
@@ -180,7 +210,7 @@ fn put_json(root: &mut Json, keys: &[Key], value: &Json) -> Option<()> {
             }
         };
     }
-    *place = value.clone();
+    *place = value;
     Some(())
 }
 
@@ -299,7 +329,7 @@ fn toml_of(json: &Json) -> Option<Toml> {
             None => number.as_f64()?.into(),
         },
         Json::String(text) => text.as_str().into(),
-        Json::Array(items) => Toml::Array(items.iter().filter_map(toml_of).collect()),
+        Json::Array(items) => Toml::Array(items.iter().map(toml_of).collect::<Option<_>>()?),
         Json::Object(entries) => {
             let entries = entries
                 .iter()

@@ -82,6 +82,7 @@ use serde::Deserialize;
 
 pub use datum::Datum;
 pub use diff::{Difference, diff};
+pub(crate) use edit::Edit;
 pub use error::{Problem, SceneError};
 pub use format::schema;
 pub use limits::read_file;

@@ -7,8 +7,7 @@ use super::error::Problem;
 use super::limits;
 use super::path::{push_step, steps};
 use super::text_span::{Lines, TextSpan};
-use crate::terminal_text::is_strange;
-use crate::terminal_text::shorten;
+use crate::terminal_text::{is_plain, is_strange, shorten};
 
 /// A value and its place in the text.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,7 +61,7 @@ impl Node {
     }
 
     fn find_control_characters(&self, path: &str, found: &mut Vec<Problem>) {
-        let speaks = |text: &str| text.contains(is_strange);
+        let speaks = |text: &str| !is_plain(text) && text.contains(is_strange);
         let problem = |path: &str, place: Option<TextSpan>, what: &str, text: &str| {
             let message = format!(
                 "{what} \"{}\" has control characters, line feeds, tabs or characters that are not seen",

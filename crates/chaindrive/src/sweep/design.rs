@@ -8,7 +8,7 @@ use serde_json::Value as Json;
 
 use super::dimension::Arrangement;
 use super::{CHOSEN, Dimension, MOST, Setting, Sweep, SweepError, dimension};
-use crate::scene::{Datum, Scene, SceneError};
+use crate::scene::{Datum, Scene};
 use crate::{Channel, Origin, Run};
 
 /// Variants that are made before a sweep begins, until one of them is a drive. *Assumed*: some milliseconds each.
@@ -98,16 +98,15 @@ impl Sweep {
         let mut most_samples = 0;
         for (index, (path, settings)) in vary.iter().enumerate() {
             let with = |setting: &Setting| {
-                let mut changed = scene.clone();
-                for (other, (path, settings)) in vary.iter().enumerate() {
+                let edits = vary.iter().enumerate().map(|(other, (path, settings))| {
                     let setting = if other == index {
                         setting
                     } else {
                         &settings[0]
                     };
-                    changed = setting.put(&changed, path)?;
-                }
-                Ok::<_, SceneError>(changed)
+                    setting.edit(scene, path)
+                });
+                scene.put(&edits.collect::<Result<Vec<_>, _>>()?)
             };
             let first = with(&settings[0])?;
             places.push(new_place(&first, path, &places)?);

@@ -8,7 +8,7 @@ use super::texts::TEXTS;
 use super::{MOST, ResultQuantity, Statistic, SweepError, VARIANT};
 use crate::Axis;
 use crate::Channel;
-use crate::scene::{Datum, Scene, SceneError, is_number};
+use crate::scene::{Datum, Edit, Scene, SceneError, is_number};
 
 /// How the values of several paths become variants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -92,10 +92,11 @@ impl Setting {
         }
     }
 
-    pub(super) fn put(&self, scene: &Scene, path: &str) -> Result<Scene, SceneError> {
+    /// The edit that puts it at a path of a scene.
+    pub(super) fn edit(&self, scene: &Scene, path: &str) -> Result<Edit, SceneError> {
         match self {
-            Self::Text(text) => scene.replace(path, text),
-            Self::Json(json) => scene.replace_json(path, json),
+            Self::Text(text) => scene.edit(path, text),
+            Self::Json(json) => scene.edit_json(path, json),
         }
     }
 

@@ -94,7 +94,7 @@ impl Stack {
         let Curve::Hertz(_) = self.curve else {
             return penetrations.map(|penetration| self.energy(penetration));
         };
-        if self.compliance <= 0.0 || !penetrations.iter().all(|penetration| *penetration > 0.0) {
+        if self.compliance <= 0.0 || !penetrations.iter().all(|penetration| *penetration >= 0.0) {
             return penetrations.map(|penetration| self.energy(penetration));
         }
         let (mut x, mut forces) = (penetrations, [0.0; N]);

@@ -45,6 +45,8 @@ pub struct Statics {
 const CONVERGED: f64 = 1e-9;
 /// Residual that is accepted where rounding keeps the iteration from going further.
 const ACCEPTED: f64 = 1e-6;
+/// Residual at which the next share of a load may come on: the next iteration begins farther away.
+const UNDER_WAY: f64 = 1e-3;
 
 /// Way, in pitches, after which rollers near a body are looked for anew: a quarter of how far around it windows reach.
 const LOOK: f64 = 0.125;
@@ -83,7 +85,7 @@ pub(super) fn settle(
     };
     // A chain that pulls as it was laid finds its place under that alone; where Newton's method does not, downhill.
     if taut {
-        let mut found = newton.solve(q, at, 300);
+        let mut found = newton.solve(q, at, 300, CONVERGED);
         if found.residual >= ACCEPTED {
             may_descend()?;
             found = newton.descend(q, at);
@@ -107,8 +109,13 @@ pub(super) fn settle(
                 "gravity" => load.gravity = next,
                 _ => load.torque = next,
             }
-            let found = newton.solve(q, load, 120);
-            if found.residual < ACCEPTED {
+            let [enough, accepted] = if next < 1.0 {
+                [UNDER_WAY; 2]
+            } else {
+                [CONVERGED, ACCEPTED]
+            };
+            let found = newton.solve(q, load, 120, enough);
+            if found.residual <= accepted {
                 share = next;
                 step *= 1.8;
                 q.clone_from(&found.q);
@@ -288,7 +295,7 @@ impl Newton<'_> {
     ///
     /// Steps need not lower the energy one by one: the seats are strongly curved valleys of
     /// radius r_i − d₁/2, and a step along one first climbs and then falls back.
-    fn solve(&mut self, start: &[f64], load: Load, most: usize) -> StaticSolution {
+    fn solve(&mut self, start: &[f64], load: Load, most: usize, enough: f64) -> StaticSolution {
         let stiffness = self.stiffest();
         let mut q = start.to_vec();
         let mut shift = 1e-7 * stiffness;
@@ -296,7 +303,7 @@ impl Newton<'_> {
         let mut residual = self.residual(&q, &balance);
         let mut best = (residual, q.clone());
         let mut iterations = 0;
-        while iterations < most && residual > CONVERGED {
+        while iterations < most && residual > enough {
             // The step of Newton's method, cut where a roller would go too far.
             let Some(step) = self.step(&balance, &mut shift, stiffness) else {
                 break;

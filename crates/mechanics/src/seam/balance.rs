@@ -66,6 +66,23 @@ impl Sum<'_> {
         }
     }
 
+    /// Adds a symmetric block of ∂²E/∂q² for a few entries.
+    pub(crate) fn stiffen_all<const N: usize>(
+        &mut self,
+        entries: [usize; N],
+        value: impl Fn(usize, usize) -> f64,
+    ) {
+        let rows = entries.map(|entry| self.row[self.first + entry]);
+        for (i, row) in rows.iter().enumerate() {
+            let Some(row) = *row else { continue };
+            for (j, column) in rows.iter().enumerate() {
+                if let Some(column) = *column {
+                    self.balance.entries.push((row, column, value(i, j)));
+                }
+            }
+        }
+    }
+
     /// Adds an energy whose derivative with the place of a point is `gradient`.
     pub(crate) fn pull(&mut self, point: &Moving, gradient: Vector) {
         for way in point.ways() {

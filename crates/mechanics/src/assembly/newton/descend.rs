@@ -54,7 +54,7 @@ impl Newton<'_> {
                 (q, balance) = (tried, next);
                 shift = (shift / 2.0).max(1e-12 * stiffness);
                 if self.residual(&q, &balance) < NEAR {
-                    let found = self.solve(&q, load, 60);
+                    let found = self.solve(&q, load, 60, CONVERGED);
                     if found.residual < super::ACCEPTED {
                         return StaticSolution {
                             iterations: iterations + found.iterations,

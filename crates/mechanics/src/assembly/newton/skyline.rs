@@ -62,22 +62,25 @@ impl Skyline {
     }
 
     fn factorise(&mut self) -> bool {
-        for i in 0..self.first.len() {
+        for (i, &first) in self.first.iter().enumerate() {
+            let own = self.diagonal[i] + first - i;
+            let (before, row) = self.values.split_at_mut(own);
+            let (row, pivot) = row[..=i - first].split_at_mut(i - first);
             // Column by column of the row: each needs those before it.
-            for j in self.first[i]..i {
-                let common = self.first[i].max(self.first[j])..j;
-                let [own, others] = [i, j].map(|row| self.columns(row, common.clone()));
-                let known = dot(&self.values[own], &self.values[others]);
-                let place = self.diagonal[i] + j - i;
-                self.values[place] = (self.values[place] - known) / self.values[self.diagonal[j]];
+            for j in first..i {
+                let common = first.max(self.first[j]);
+                let (known, rest) = row.split_at_mut(j - first);
+                let others = &before[self.diagonal[j] + common - j..=self.diagonal[j]];
+                let (diagonal, others) = others.split_last().expect("the diagonal is there");
+                rest[0] = (rest[0] - dot(&known[common - first..], others)) / diagonal;
             }
-            let row = &self.values[self.columns(i, self.first[i]..i)];
-            let pivot = self.values[self.diagonal[i]] - dot(row, row);
+            let pivot = &mut pivot[0];
+            *pivot -= dot(row, row);
             // Not a number is no pivot either.
-            if pivot.is_nan() || pivot <= 0.0 {
+            if pivot.is_nan() || *pivot <= 0.0 {
                 return false;
             }
-            self.values[self.diagonal[i]] = pivot.sqrt();
+            *pivot = pivot.sqrt();
         }
         true
     }

@@ -26,24 +26,27 @@ impl Particles {
             let u = d / length;
             let [tension, stiffness] = law(link, length);
             sum.balance.tensions.push(tension);
-            let (ends, signs) = ([[a, n + a], [b, n + b]], [-1.0, 1.0]);
-            for (end, sign) in ends.iter().zip(signs) {
-                for (axis, &entry) in end.iter().enumerate() {
-                    sum.force(entry, sign * tension * u[axis]);
-                }
+            // ∂ℓ/∂q of both ends
+            let slope = [-u.x, -u.y, u.x, u.y];
+            let entries = [a, n + a, b, n + b];
+            for (entry, slope) in entries.into_iter().zip(slope) {
+                sum.force(entry, tension * slope);
             }
             // K = k u uᵀ + (T/ℓ) (1 − u uᵀ)
-            for i in 0..2 {
-                for j in 0..2 {
-                    let unit = if i == j { 1.0 } else { 0.0 };
-                    let value = stiffness * u[i] * u[j] + tension / length * (unit - u[i] * u[j]);
-                    for (first, s) in ends.iter().zip(signs) {
-                        for (second, t) in ends.iter().zip(signs) {
-                            sum.stiffen(first[i], second[j], s * t * value);
+            let across = tension / length;
+            sum.stiffen_all(entries, |i, j| {
+                let unit = match (i % 2 == j % 2, i == j) {
+                    (false, _) => 0.0,
+                    (true, same) => {
+                        if same {
+                            1.0
+                        } else {
+                            -1.0
                         }
                     }
-                }
-            }
+                };
+                (stiffness - across) * slope[i] * slope[j] + across * unit
+            });
         }
         for i in 0..self.series.rollers {
             sum.force(i, -load.gravity * self.masses[i] * gravity.x);
