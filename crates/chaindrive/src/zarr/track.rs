@@ -17,8 +17,9 @@ pub(crate) type StoredArray = Array<Ground>;
 const NUMBERS_PER_CHUNK: usize = 1 << 17;
 const SAMPLES_PER_CHUNK: usize = 1 << 14;
 
-/// Level of the compression: what is zero or constant shrinks at any level, the rest at none.
-pub(crate) const ZSTD_LEVEL: i32 = 3;
+/// Level of the compression: what is zero or constant shrinks at any level, the rest at none. Level 3 takes twice the time for stores that are
+/// 0.04 % smaller.
+pub(crate) const ZSTD_LEVEL: i32 = 1;
 
 /// Samples in a chunk of every array of a run, by the width of the widest: `dask` wants the arrays of a
 /// dataset to be cut at the same times.
