@@ -127,7 +127,9 @@ def test_a_contact_comes_into_a_closer_view(page):
     for _ in range(4):
         page.keyboard.press("n")
         # What is told changes with the next picture.
-        page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+        page.evaluate(
+            "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
+        )
         text = page.inner_text("#followed")
         roller = int(text.split("Roller ")[1].split()[0])
         x, y = page.evaluate("(roller) => replay.seen(roller)", roller)
