@@ -545,4 +545,12 @@ impl SecondOrderSystem for System {
     fn solve(&self, weights: Weights, record: &mut Record, x: &mut [f64]) -> bool {
         self.solve_step(weights, record, x)
     }
+
+    fn add_solved(&self, record: &Record, quadratures: &mut [f64]) {
+        for (member, record) in self.chains.iter().zip(&record.chains) {
+            let frames = &record.loads.frames;
+            self.bodies
+                .add_carried(&member.contacts, record.carried(), frames, quadratures);
+        }
+    }
 }
