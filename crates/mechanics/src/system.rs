@@ -161,6 +161,11 @@ impl System {
         self.sum(Chain::joints)
     }
 
+    /// Whether a chain has pins with play in their bushes.
+    pub fn has_play(&self) -> bool {
+        self.chains.iter().any(|member| member.chain.has_play())
+    }
+
     /// Whether a chain has rollers that are bodies of their own.
     pub fn has_free_rollers(&self) -> bool {
         let mut chains = self.chains.iter();

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use chaindrive_mechanics::{Assembled, ChainModel, Joint};
+use chaindrive_mechanics::Assembled;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -262,7 +262,7 @@ pub(crate) fn choose_with(
         evaluations: 0,
     };
     let names = start.system.sprocket_names();
-    let play = has_play(start);
+    let play = start.system.has_play();
     // What twins make of the promise: taken where something turns on it.
     let mut spread = None;
     let mut place = 0;
@@ -325,16 +325,6 @@ const OPEN_LOSSES: f64 = 0.3;
 /// The same with play in the joints, whose steps book all that they do, together with what losses differ from the sharper candidate, caution
 /// included. *Assumed*, with regard to the motorcycle, which errs by 3.6 % at the step of 2.5 µs that this leaves, and by 8 % at 3.8 µs.
 const UNCERTAIN_LOSSES: f64 = 0.1;
-
-/// Whether some chain has pins with play in their bushes.
-fn has_play(start: &Assembled) -> bool {
-    let models = start.drive.chains.iter().map(|placed| &placed.chain.model);
-    let mut rigid = models.filter_map(|model| match model {
-        ChainModel::Rigid(links) => Some(links),
-        ChainModel::Particles | ChainModel::Points(_) | ChainModel::Strands(_) => None,
-    });
-    rigid.any(|links| matches!(links.joint, Joint::Clearance(_)))
-}
 
 /// Errors of a candidate against its reference run.
 struct CandidateErrors {
