@@ -15,12 +15,15 @@ pub(crate) const LIMIT: f64 = 2.0;
 pub(crate) struct ImplicitDamping {
     /// Unknowns of the equations: Δv, then Δz.
     change: Vec<f64>,
+    /// What the forces of the solution do to the quadratures.
+    works: Vec<f64>,
 }
 
 impl ImplicitDamping {
     pub(crate) fn new(size: Size) -> Self {
         Self {
             change: vec![0.0; size.dofs + size.states],
+            works: vec![0.0; size.quadratures],
         }
     }
 
@@ -85,10 +88,15 @@ impl ImplicitDamping {
             return Outcome::NoSolution;
         }
         registers.dispatch(ahead(h, from, &self.change, to));
+        self.works.fill(0.0);
+        system.add_solved(record, &mut self.works);
         // Forces at the end: those of the next step, and of what is recorded.
         to.evaluate(system, record);
         counts.evaluations += 1;
         to.trapezoidal(from, h);
+        for (quadrature, work) in to.quadratures.iter_mut().zip(&self.works) {
+            *quadrature += work;
+        }
         Outcome::of(registers.dispatch(finite(to)))
     }
 }

@@ -221,4 +221,15 @@ pub trait SecondOrderSystem {
         let _ = (weights, record, x);
         false
     }
+
+    /// Adds to the quadratures what the forces that [`solve`](Self::solve) has just added do in the step of one solution that it makes.
+    ///
+    /// ```text
+    /// f − (c C + k K) Δv/h      over the step, where an evaluation knows of f only
+    /// ```
+    ///
+    /// What moves by itself bears these forces in its motion. What is moved bears them too: its work and its impulses are theirs as well.
+    fn add_solved(&self, record: &Self::Record, quadratures: &mut [f64]) {
+        let _ = (record, quadratures);
+    }
 }

@@ -292,6 +292,25 @@ impl AccountRates<'_> {
         self.add(shaft, Source::Chains, power);
     }
 
+    /// Adds an impulse of the chain on a sprocket, which does work on its shaft: force, and moment \[N s, N m s\].
+    pub(crate) fn strike(&mut self, index: usize, shaft: usize, speed: f64, impulse: [f64; 3]) {
+        let [x, y, moment] = impulse;
+        let row = &mut self.sprockets[index * SprocketAccount::LENGTH..];
+        for (sum, added) in row.iter_mut().zip([moment * speed, moment, x, y]) {
+            *sum += added;
+        }
+        self.add(shaft, Source::Chains, moment * speed);
+    }
+
+    /// Adds an impulse of the chain on a guide \[N s\], and what is lost \[J\].
+    pub(crate) fn strike_guide(&mut self, index: usize, impulse: [f64; 2], lost: f64) {
+        let [x, y] = impulse;
+        let row = &mut self.guides[index * GuideAccount::LENGTH..];
+        for (sum, added) in row.iter_mut().zip([x, y, lost]) {
+            *sum += added;
+        }
+    }
+
     /// Adds what the dampers at a sprocket take \[W\].
     #[inline(always)]
     pub(crate) fn damp(&mut self, index: usize, power: f64) {

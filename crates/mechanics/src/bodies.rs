@@ -1,6 +1,7 @@
 //! Wheels, rails and carriers, compiled: where they are and how they move.
 
 mod anchor;
+mod carried;
 mod contacts;
 mod equations;
 mod group;

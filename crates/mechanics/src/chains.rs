@@ -39,7 +39,7 @@ use crate::bodies::{BodyContacts, GroupBodies, Surroundings};
 use crate::contact::{ContactState, Frame, Onsets, PlateContact, Touch, Wrench};
 use crate::energy::Energy;
 use crate::joints::{self, JointFindings, JointMemory, Stick};
-use crate::seam::{Load, Loads, Moving, Observation, Pose, Rates, Sum, Unknown};
+use crate::seam::{Carried, Load, Loads, Moving, Observation, Pose, Rates, Sum, Unknown};
 
 /// A chain ready to move.
 #[derive(Clone, Debug)]
@@ -87,6 +87,11 @@ impl Record {
             },
             ..Self::default()
         }
+    }
+
+    /// What the equations of the step that was solved last added to the forces; nothing where steps add nothing.
+    pub(crate) fn carried(&self) -> &Carried {
+        &self.links.joint_state.carried
     }
 
     /// Contacts found in the joints of links and of points.

@@ -1,6 +1,7 @@
 //! Vocabulary that chains, bodies and the system share: what they hand each other, as data.
 
 mod balance;
+mod carried;
 mod contact_log;
 mod loads;
 mod moving;
@@ -9,6 +10,7 @@ mod pose;
 mod rates;
 
 pub(crate) use balance::{Balance, Load, Sum, Unknown};
+pub(crate) use carried::{Carried, CarriedByMount};
 pub(crate) use contact_log::EventLog;
 pub use contact_log::{ContactEvent, ContactPair, EventKinds};
 pub(crate) use loads::Loads;

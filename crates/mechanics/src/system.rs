@@ -161,6 +161,11 @@ impl System {
         self.sum(Chain::joints)
     }
 
+    /// Whether a chain has pins with play in their bushes.
+    pub fn has_play(&self) -> bool {
+        self.chains.iter().any(|member| member.chain.has_play())
+    }
+
     /// Whether a chain has rollers that are bodies of their own.
     pub fn has_free_rollers(&self) -> bool {
         let mut chains = self.chains.iter();
@@ -544,5 +549,13 @@ impl SecondOrderSystem for System {
 
     fn solve(&self, weights: Weights, record: &mut Record, x: &mut [f64]) -> bool {
         self.solve_step(weights, record, x)
+    }
+
+    fn add_solved(&self, record: &Record, quadratures: &mut [f64]) {
+        for (member, record) in self.chains.iter().zip(&record.chains) {
+            let frames = &record.loads.frames;
+            self.bodies
+                .add_carried(&member.contacts, record.carried(), frames, quadratures);
+        }
     }
 }

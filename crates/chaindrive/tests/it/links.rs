@@ -265,6 +265,13 @@ fn heavy_impacts_do_not_feed_themselves() {
     assert!(open < 0.05, "{open}");
 }
 
+/// Of the work of the chainring and the losses of contacts belongs to the ledger what the equations of a step add to forces: without it 0.15 is open.
+#[test]
+fn the_ledger_of_long_steps_closes() {
+    let open = open_share(&preset("bicycle"), 10e-3, Some(10e-6));
+    assert!((1e-6..0.04).contains(&open), "{open}");
+}
+
 /// The ledger closes with the step, whether the chain is taut or hangs.
 #[test]
 fn ideal_joints_step_by_implicit_damping() {

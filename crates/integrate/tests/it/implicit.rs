@@ -504,3 +504,67 @@ fn a_nan_stops_the_run_and_says_where() {
         assert_eq!((dof, quantity), (1, StateQuantity::Acceleration));
     }
 }
+
+/// A mass of 1 kg drawn along through a damper by a plate that moves at 1 m/s after a moment.
+struct Towed {
+    damping: f64,
+}
+
+/// Speed of the plate beside the mass, length of the step, change of the speed of the mass.
+#[derive(Default)]
+struct Towing {
+    slip: f64,
+    h: f64,
+    change: f64,
+}
+
+impl SecondOrderSystem for Towed {
+    type Record = Towing;
+    fn new_record(&self) -> Towing {
+        Towing::default()
+    }
+    fn dofs(&self) -> usize {
+        1
+    }
+    /// Supplied by the plate, and lost.
+    fn quadratures(&self) -> usize {
+        2
+    }
+    fn evaluate(&self, at: Moment<'_>, a: &mut [f64], rates: &mut [f64], record: &mut Towing) {
+        let plate = if at.t > 0.05 { 1.0 } else { 0.0 };
+        record.slip = plate - at.v[0];
+        a[0] = self.damping * record.slip;
+        rates.copy_from_slice(&[a[0] * plate, a[0] * record.slip]);
+    }
+    fn can_solve(&self) -> bool {
+        true
+    }
+    fn solve(&self, weights: Weights, record: &mut Towing, x: &mut [f64]) -> bool {
+        x[0] /= 1.0 + weights.damping * self.damping;
+        (record.h, record.change) = (weights.damping, x[0]);
+        true
+    }
+    fn add_solved(&self, record: &Towing, quadratures: &mut [f64]) {
+        let Towing { slip, h, change } = *record;
+        // The damper slackens by c Δv, and the slip by half of Δv; all that happens is after the plate has set out.
+        quadratures[0] -= h * self.damping * change;
+        quadratures[1] -= h * self.damping * change * (slip + 0.5 * (slip - change));
+    }
+}
+
+/// Ten times as stiff as the step resolves, a damper takes as much as it gives: half of what the plate does.
+#[test]
+fn what_a_solution_adds_to_forces_is_booked() {
+    let mut towed = Towed { damping: 100.0 };
+    let mut state = State::new(0.0, vec![0.0], vec![0.0]);
+    let method = Method::ImplicitDamping { step: 0.1 };
+    let mut stepper = method.start(&mut towed, &mut state).expect("starts");
+    for _ in 0..30 {
+        stepper.advance(&mut towed, &mut state).expect("goes on");
+    }
+    let [supplied, lost] = [state.quadratures[0], state.quadratures[1]];
+    let close = |found: f64, wanted: f64| (found - wanted).abs() < 1e-12;
+    assert!(close(state.v[0], 1.0), "{}", state.v[0]);
+    assert!(close(supplied, 1.0), "{supplied}");
+    assert!(close(lost, 0.5), "{lost}");
+}

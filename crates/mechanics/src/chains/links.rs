@@ -52,7 +52,7 @@ use crate::joints::{
     contacts, cross, touch,
 };
 use crate::lanes::Wide;
-use crate::seam::Loads;
+use crate::seam::{Carried, Loads};
 
 /// A body of the chain: a link, or a free roller.
 #[derive(Clone, Copy, Debug)]
@@ -123,6 +123,9 @@ pub(crate) struct JointState {
     /// All closed contacts, but those of pins in bushes.
     pub(crate) elements: Vec<Element>,
     pub(crate) mounts: Vec<Mount>,
+    /// What the equations of the last step added to the forces.
+    #[serde(skip)]
+    pub(crate) carried: Carried,
     // Work space, filled anew before it is read.
     #[serde(skip)]
     pub(crate) equations: equations::Equations,

@@ -98,6 +98,9 @@ pub(crate) struct Grip<S: Simd> {
     pub(crate) secant: Lane<S>,
     /// Stiffness across, F/|e| \[N/m\].
     pub(crate) across: Lane<S>,
+    /// δ̇ \[m/s\], and what of F resists it: all but the elastic force \[N\].
+    pub(crate) closing: Lane<S>,
+    pub(crate) resisting: Lane<S>,
     /// From the centres of the sides before and after along n to where they touch \[m\].
     pub(crate) levers: [Lane<S>; 2],
 }
@@ -152,6 +155,8 @@ impl BoreContact {
             drag: zero,
             secant: zero,
             across: zero,
+            closing,
+            resisting: zero,
             levers: [zero, zero],
         };
         let Some(pressed) =
@@ -161,6 +166,7 @@ impl BoreContact {
         };
         [grip.stiffness, grip.damping] = law.slopes::<S, true>(w, &pressed, None);
         grip.force = pressed.force;
+        grip.resisting = pressed.resisting(w);
         // A force that keeps its direction along e resists what goes across it, as a pendulum does.
         grip.across = pressed.force * inverse;
         if law.friction.acts() {

@@ -83,6 +83,15 @@ pub(crate) struct PressedLane<S: Simd> {
     pub(crate) force: Lane<S>,
 }
 
+impl<S: Simd> PressedLane<S> {
+    /// What of the force of a whole contact is not elastic \[N\].
+    #[inline(always)]
+    pub(crate) fn resisting(&self, w: Wide<S>) -> Lane<S> {
+        let resisting = self.force - self.elastic.force;
+        self.closed.select(resisting, w.splat(0.0))
+    }
+}
+
 impl SurfaceLaw {
     pub(crate) fn new(surface: &Surface, flank: Option<Flank>) -> Self {
         let (factor, damping) = match surface.law.dissipation.action() {

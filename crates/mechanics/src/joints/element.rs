@@ -56,6 +56,8 @@ pub(crate) struct Element {
     pub(crate) secant: f64,
     /// Stiffness across, from the turning of the normal \[N/m\].
     pub(crate) across: f64,
+    /// Closing speed \[m/s\].
+    pub(crate) closing: f64,
 }
 
 /// `ẑ·(a × b)`.

@@ -48,6 +48,7 @@ pub(crate) fn touch(
         drag: grip.drag.sum(),
         secant: grip.secant.sum(),
         across: grip.across.sum(),
+        closing: grip.closing.sum(),
     })
 }
 

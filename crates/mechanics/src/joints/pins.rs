@@ -44,6 +44,9 @@ pub(crate) struct Pins {
     pub(crate) rub: Array,
     pub(crate) drag: Array,
     pub(crate) secant: Array,
+    /// δ̇ \[m/s\], and what of F is not elastic \[N\].
+    pub(crate) closing: Array,
+    pub(crate) resisting: Array,
 }
 
 /// Which joints there are, and how they are put together.
@@ -131,7 +134,7 @@ impl Pairs {
 }
 
 impl Pins {
-    fn all(&mut self) -> [&mut Array; 16] {
+    fn all(&mut self) -> [&mut Array; 18] {
         [
             &mut self.gap,
             &mut self.force,
@@ -149,6 +152,8 @@ impl Pins {
             &mut self.rub,
             &mut self.drag,
             &mut self.secant,
+            &mut self.closing,
+            &mut self.resisting,
         ]
     }
 
@@ -216,6 +221,7 @@ impl Pins {
             drag: self.drag[joint],
             secant: self.secant[joint],
             across: self.across[joint],
+            closing: self.closing[joint],
         })
     }
 }
@@ -291,6 +297,8 @@ kernel!(
             grip.stiffness.store(&mut pins.stiffness, start);
             grip.damping.store(&mut pins.damping, start);
             grip.across.store(&mut pins.across, start);
+            grip.closing.store(&mut pins.closing, start);
+            grip.resisting.store(&mut pins.resisting, start);
             push[0].store(&mut pins.push_x, start);
             push[1].store(&mut pins.push_y, start);
             moment_before.store(&mut pins.moment_before, start);

@@ -9,6 +9,7 @@ use super::{BorderedBlocks, Linkage};
 use crate::bodies::GroupBodies;
 use crate::chains::makeup::Makeup;
 use crate::joints::{Element, Mount, Partner, Row, cross, partner_row};
+use crate::seam::{Carried, CarriedByMount};
 
 /// Position of a body's unknowns in the equations.
 #[derive(Clone, Copy, PartialEq)]
@@ -24,6 +25,8 @@ enum BodyUnknowns {
 pub(crate) struct Equations {
     pub(super) blocks: BorderedBlocks,
     pub(super) loose: Vec<FreeRollerEquations>,
+    /// Weights of the contacts that are no joints in a step of one solution, normal and tangent, in their order.
+    weights: Vec<[f64; 2]>,
 }
 
 /// The system under assembly.
@@ -31,6 +34,7 @@ pub(super) struct Sum<'a> {
     pub(super) linkage: &'a Linkage,
     pub(super) blocks: &'a mut BorderedBlocks,
     pub(super) loose: &'a mut [FreeRollerEquations],
+    weights: &'a mut Vec<[f64; 2]>,
     /// Unknowns of the border.
     border: usize,
     /// Those of the wheels among them come last, from this one on.
@@ -45,7 +49,12 @@ impl<'a> Sum<'a> {
         row: usize,
         x: &[f64],
     ) -> Self {
-        let Equations { blocks, loose } = equations;
+        let Equations {
+            blocks,
+            loose,
+            weights,
+        } = equations;
+        weights.clear();
         let first = 3 * (linkage.series.links - row);
         let border = first + x.len() - linkage.coordinates();
         blocks.clear(row, border);
@@ -58,6 +67,7 @@ impl<'a> Sum<'a> {
             linkage,
             blocks,
             loose,
+            weights,
             border,
             first,
         }
@@ -148,16 +158,7 @@ impl<'a> Sum<'a> {
     /// Adds a contact; `b` is the change of velocities that the forces by themselves make.
     pub(super) fn add(&mut self, element: &Element, mounts: &[Mount], weights: Weights, b: &[f64]) {
         let tangent = element.tangent();
-        let rows = |direction: Vector, levers: [f64; 2]| {
-            let a = Vector3::new(
-                direction.x,
-                direction.y,
-                cross(element.arm_a, direction) + levers[0],
-            );
-            (a, partner_row(element, mounts, direction, levers[1]))
-        };
-        let along = rows(element.normal, [0.0; 2]);
-        let across = rows(tangent, [element.lever_a, element.lever_b]);
+        let [along, across] = rows(element, mounts);
         if weights.once {
             // Of what does not rub no weight depends on it.
             let change = if element.rub.abs() > 0.0 {
@@ -167,6 +168,7 @@ impl<'a> Sum<'a> {
             };
             let [normal, tangent] =
                 element.step_weights(weights, self.linkage.soft(weights), change);
+            self.weights.push([normal, tangent]);
             self.square(element.a, along.0, along.1, normal);
             self.square(element.a, across.0, across.1, tangent);
             return;
@@ -188,6 +190,50 @@ impl<'a> Sum<'a> {
             let b = partner_row(&pivoting, mounts, tangent, 0.0);
             self.square(element.a, a, b, weights.stiffness * element.across.max(0.0));
             self.add_bend(&pivoting, mounts, weights.stiffness);
+        }
+    }
+
+    /// What the contacts but those of pins do in a step of length h \[s\] that takes one solution, beside their forces at its beginning;
+    /// `x` is the solution.
+    ///
+    /// ```text
+    /// w Δ                          impulse along every row: w its weight, Δ the change of closing or slip
+    /// h d Δ (δ̇ + ½ (δ̇ + Δ))     lost along the normal
+    /// ```
+    ///
+    /// A damper with R = d δ̇ at the beginning has R + d Δ over the step, at a speed of δ̇ + ½ Δ.
+    pub(super) fn carry(
+        &self,
+        elements: &[Element],
+        mounts: &[Mount],
+        h: f64,
+        x: &[f64],
+        carried: &mut Carried,
+    ) {
+        let nothing = CarriedByMount {
+            push: Vector::zeros(),
+            moment: 0.0,
+            lost: 0.0,
+        };
+        carried.mounts.clear();
+        carried.mounts.resize(mounts.len(), nothing);
+        carried.joints = [0.0; 2];
+        for (element, weights) in elements.iter().zip(&*self.weights) {
+            let [along, across] = rows(element, mounts);
+            let change = self.change(element.a, along, x);
+            let closing = element.closing + 0.5 * (element.closing + change);
+            let lost = h * element.damping * change * closing;
+            let Partner::Mount(mount) = element.b else {
+                carried.joints[1] += lost;
+                continue;
+            };
+            let normal = weights[0] * change;
+            let rub = weights[1] * self.change(element.a, across, x);
+            let push = element.normal * normal + element.tangent() * rub;
+            let on = &mut carried.mounts[mount];
+            on.push += push;
+            on.moment += cross(element.arm_b, push) + element.lever_b * rub;
+            on.lost += lost;
         }
     }
 
@@ -403,4 +449,17 @@ impl<'a> Sum<'a> {
             self.beside(place, j, -(through * row));
         }
     }
+}
+
+/// Rows of a contact: its normal, and its tangent with the levers of the friction.
+fn rows(element: &Element, mounts: &[Mount]) -> [(Vector3<f64>, Row); 2] {
+    let row = |direction: Vector, levers: [f64; 2]| {
+        let turn = cross(element.arm_a, direction) + levers[0];
+        let own = Vector3::new(direction.x, direction.y, turn);
+        (own, partner_row(element, mounts, direction, levers[1]))
+    };
+    [
+        row(element.normal, [0.0; 2]),
+        row(element.tangent(), [element.lever_a, element.lever_b]),
+    ]
 }

@@ -27,6 +27,7 @@ use super::reactions::Sections;
 use super::{BorderedBlocks, Joining, JointState, Linkage};
 use crate::bodies::GroupBodies;
 use crate::contact::BoreContact;
+use crate::joints::Pins;
 use crate::lanes::{LANES, Lane, Wide, padded};
 
 /// The rows of one step and their factors.
@@ -107,6 +108,19 @@ impl Linkage {
         let solved = sound && work.find(sum.blocks, links);
         if solved {
             sum.read(x);
+            let JointState {
+                elements,
+                mounts,
+                carried,
+                ..
+            } = &mut *joint_state;
+            sum.carry(elements, mounts, weights.damping, x, carried);
+            let found = Found {
+                linkage: self,
+                pins: &joint_state.pins,
+                h: weights.damping,
+            };
+            joint_state.carried.joints[0] = self.series.registers.dispatch(lost(work, found));
         }
         joint_state.equations = equations;
         solved
@@ -157,6 +171,51 @@ kernel!(
         work.columns = columns;
     }
 );
+
+/// Joints and links after the solution of a step of length h \[s\].
+#[derive(Clone, Copy)]
+struct Found<'a> {
+    linkage: &'a Linkage,
+    pins: &'a Pins,
+    h: f64,
+}
+
+kernel!(
+    /// Energy \[J\] that the joints lose along their normals in a step, beside what their forces at its beginning do at the speeds then.
+    ///
+    /// ```text
+    /// h (½ R Δ + d Δ (δ̇ + ½ Δ))     R: what of the force resists, R + d Δ over the step at a speed of δ̇ + ½ Δ
+    /// ```
+    fn lost<'a, S: Simd>(w: Wide<S>, work: &'a mut Impulses, found: Found<'a>) -> f64 {
+        let Found { linkage, pins, h } = found;
+        let Some(whole) = work.columns.last_mut() else {
+            return 0.0;
+        };
+        let (answer, rows) = (&mut whole.answer, &work.rows[0]);
+        answer.close(linkage);
+        let half = w.splat(0.5);
+        let (joints, mut sum) = (linkage.joints.len(), w.splat(0.0));
+        for start in (0..joints).step_by(Wide::<S>::COUNT) {
+            let (before, after) = (load(w, answer, start), load(w, answer, start + 1));
+            let change = parting(rows.load(w, start), &before, &after);
+            let [damping, closing, resisting] =
+                [&pins.damping, &pins.closing, &pins.resisting].map(|all| w.load(all, start));
+            let speed = closing.plus(half, change);
+            let lost = change * (half * resisting).plus(damping, speed);
+            sum += w.first(joints - start).select(lost, w.splat(0.0));
+        }
+        h * sum.sum()
+    }
+);
+
+/// How the sides of joints part along a row.
+#[inline(always)]
+fn parting<S: Simd>(row: RowLane<S>, before: &[Lane<S>; 3], after: &[Lane<S>; 3]) -> Lane<S> {
+    let along = (row.x * (after[0] - before[0])).plus(row.y, after[1] - before[1]);
+    along
+        .plus(row.turn_after, after[2])
+        .minus(row.turn_before, before[2])
+}
 
 impl Impulses {
     fn resize(&mut self, linkage: &Linkage) {
@@ -217,12 +276,8 @@ impl Impulses {
         // J x: how the sides of the joints part along the rows.
         for start in (0..linkage.joints.len()).step_by(Wide::<S>::COUNT) {
             let (before, after) = (load(w, answer, start), load(w, answer, start + 1));
-            let parting = [after[0] - before[0], after[1] - before[1]];
             for (rows, to) in self.rows.iter().zip(&mut *impulses) {
-                let row = rows.load(w, start);
-                let along = (row.x * parting[0]).plus(row.y, parting[1]);
-                let along = along.plus(row.turn_after, after[2]);
-                along.minus(row.turn_before, before[2]).store(to, start);
+                parting(rows.load(w, start), &before, &after).store(to, start);
             }
         }
         self.sections.solve(w, impulses);

@@ -154,6 +154,7 @@ impl Linkage {
                     secant: 0.0,
                     // −F × bend of the gap's level line: a seat holds a roller, a bulge sheds it.
                     across: -force * bend,
+                    closing: touch.state.get(MemoryField::Closing, index),
                 };
                 if rubs {
                     // Its tangent turns with the normal.

@@ -17,7 +17,7 @@ use crate::seam::Rates;
 const WHEEL_SHARE: f64 = 1.1;
 const RIM_SHARE: f64 = 11.0;
 /// How much longer than explicit ones steps are that carry the stiffness of contacts as inertia. Assumed, with regard to contacts that open
-/// and close: the bicycle errs by 0.07 to 0.1 % in its tight span and by 2 to 4 % in its losses at 10 to 13 µs, where 15.8 µs are the limit that
+/// and close: the bicycle errs by 0.07 to 0.1 % in its tight span and by 0.3 to 0.6 % in its losses at 10 to 14 µs, where 15.8 µs are the limit that
 /// this leaves; from 16 µs on impacts that are shorter than a step bring energy in here and there, and at 20 µs everywhere.
 const CARRIED: f64 = 2.4;
 /// Depth at which contacts that are open now are reckoned with \[m\].

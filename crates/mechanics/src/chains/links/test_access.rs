@@ -57,7 +57,7 @@ impl<'a> Inside<'a> {
             sum.add(element, &joint_state.mounts, weights, b);
         });
         sum.add_hinge_turns(joint_state, weights.stiffness);
-        let Equations { blocks, loose } = equations;
+        let Equations { blocks, loose, .. } = equations;
         let size = b.len() + 2 * linkage.joints.len();
         let mut matrix = DMatrix::zeros(size, size);
         let mut right = DVector::zeros(size);
