@@ -48,16 +48,15 @@ fn energy_that_does_not_add_up_is_distrusted() {
 /// Defect A5: of the energy moved 1 % is missing, which is more than all that is lost.
 #[test]
 fn losses_that_are_wrong_are_distrusted() {
+    // Impacts that are shorter than a step bring energy in: the losses are twice those of short steps.
     let long_steps = Run {
-        step: Some(2.2e-6),
-        ..run(1e-4, 10.0)
+        step: Some(5e-6),
+        ..run(0.01, 10.0)
     };
-    let rough = verdict(&bare("motorcycle"), &long_steps);
+    let rough = verdict(&preset("motorcycle", &[]), &long_steps);
     assert_eq!(rough.trust, Trust::Distrusted, "{rough}");
     let found = names(&rough);
     assert!(found.contains(&"losses-wrong"), "{rough}");
-    // Fewer than three teeth have passed: there is no efficiency that could be above one.
-    assert!(!found.contains(&"efficiency-above-one"), "{rough}");
 
     let fine = verdict(&preset("industrial_16b", &[]), &run(2e-3, 10.0));
     assert_eq!(
@@ -68,10 +67,10 @@ fn losses_that_are_wrong_are_distrusted() {
 }
 
 /// Defect A5: the chain of a large engine with clearance, joints that rub, and a heavy load. At the step that implicit damping takes by
-/// itself more than half of the losses is unaccounted for, though it is a few hundredths of the energy moved; with generalized alpha
-/// they are right.
+/// itself its driver was short by 3 % of its power, one and a half times the losses, because what the equations of a step add to the forces
+/// was not in the works. Generalized alpha, whose forces are those of its own midpoint, is the authority: 280 J, as steps of 1 µs have them.
 #[test]
-fn losses_of_a_large_chain_with_joints_that_rub_are_distrusted_where_they_are_wrong() {
+fn losses_and_power_of_a_large_chain_with_joints_that_rub_are_right() {
     let large = Scene::from_toml(
         r#"
         [chain]
@@ -115,25 +114,26 @@ fn losses_of_a_large_chain_with_joints_that_rub_are_distrusted_where_they_are_wr
             None,
             Some(&Judgement::SwitchedOff),
         );
-        (verdict, ledger.residual.abs() / ledger.moved)
+        assert_eq!(verdict.trust, Trust::Caution, "{verdict}");
+        assert!(!verdict.note().contains("losses"), "{verdict}");
+        (ledger.losses, ledger.supplied)
     };
-    let (rough, of_moved) = by(Stepping::ImplicitDamping);
-    assert_eq!(rough.trust, Trust::Distrusted, "{rough}");
-    assert!(names(&rough).contains(&"losses-wrong"), "{rough}");
-    // Judged by the energy moved, a tenth of which may be missing, nothing would be said.
-    assert!(of_moved < 0.1, "{of_moved}");
-    let (fine, _) = by(Stepping::GeneralizedAlpha);
-    assert_eq!(fine.trust, Trust::Caution, "{fine}");
-    assert!(!fine.note().contains("losses"), "{fine}");
+    let (rough, fine) = (
+        by(Stepping::ImplicitDamping),
+        by(Stepping::GeneralizedAlpha),
+    );
+    assert!((rough.0 / fine.0 - 1.0).abs() < 0.06, "{rough:?} {fine:?}");
+    assert!((rough.1 / fine.1 - 1.0).abs() < 1e-3, "{rough:?} {fine:?}");
 }
 
 #[test]
 fn losses_that_are_uncertain_are_a_caution() {
     let coarse = Run {
-        step: Some(2.4e-6),
-        ..run(0.01, 10.0)
+        step: Some(2.2e-6),
+        ..run(1e-4, 10.0)
     };
-    let found = verdict(&preset("motorcycle", &[]), &coarse);
+    let bare_seats = preset("motorcycle", &[("contact.teeth.series", "0")]);
+    let found = verdict(&bare_seats, &coarse);
     assert!(names(&found).contains(&"losses-uncertain"), "{found}");
     assert_eq!(found.trust, Trust::Caution);
 }
@@ -335,14 +335,12 @@ fn results_carry_the_verdict() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("rough.zarr");
     let settings = Settings::default()
-        .with("until", SettingValue::Number(1e-4))
-        .with("every", SettingValue::Number(1e-5))
+        .with("until", SettingValue::Number(0.01))
+        .with("every", SettingValue::Number(1e-3))
         .with("method", SettingValue::Text("implicit-damping".to_owned()))
-        .with("step", SettingValue::Text("3 µs".to_owned()))
+        .with("step", SettingValue::Text("5 µs".to_owned()))
         .with("run_in", SettingValue::Number(0.0));
-    // Bare seats strike harder than steps of 3 µs account for.
-    let bare = preset("motorcycle", &[("contact.teeth.series", "0")]);
-    let request = Request::new(&bare, &settings).unwrap();
+    let request = Request::new(&preset("motorcycle", &[]), &settings).unwrap();
     let mut store = ZarrSink::new(path.clone(), Existing::Keep);
     let told = execute(&request, &mut store, &|| false).unwrap();
     let text = std::fs::read(path.join("zarr.json")).unwrap();
