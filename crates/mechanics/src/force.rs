@@ -41,7 +41,7 @@ impl Forces {
     }
 
     /// The force \[N\] at time `t` \[s\] where no shaft has turned yet.
-    pub(crate) fn unturned(&self, t: f64) -> [f64; 2] {
+    pub fn unturned(&self, t: f64) -> [f64; 2] {
         self.sum(|it| it.at(t, 0.0))
     }
 

@@ -92,6 +92,17 @@ const CASES: &[Mistake] = &[
     ("restitution = 0.8", "restitution = 1.4", "contact.teeth.restitution", 12, "1.4, must be at most 1"),
     ("exponent = 1.5", "exponent = 7", "contact.teeth.law.exponent", 11, "7, must be at most 3"),
     ("-9.81 m/s^2", "-9.81 m/s", "gravity[1]", 2, "is a speed, needed is an acceleration"),
+    // Forces.
+    ("mass = \"4 kg\"", "mass = \"4 kg\"\nforce_x = [{ kind = \"constant\", force = nan }]", "sprockets[1].force_x[0].force", 25, "NaN is not a finite number"),
+    ("mass = \"4 kg\"", "mass = \"4 kg\"\nforce_x = [{ kind = \"constant\", force = \"5 N m\" }]", "sprockets[1].force_x[0].force", 25, "needed is a force; such as"),
+    ("mass = \"4 kg\"", "mass = \"4 kg\"\nforce_x = [{ kind = \"constant\", torque = \"5 N m\" }]", "sprockets[1].force_x[0].torque", 25, "a `constant` has no `torque`"),
+    ("mass = \"4 kg\"", "mass = \"4 kg\"\nforce_x = [{ kind = \"resistance\", linear = 1 }]", "sprockets[1].force_x[0].kind", 25, "unknown kind `resistance`; known are constant, ramp, harmonic, orders"),
+    ("mass = \"4 kg\"", "mass = \"4 kg\"\nforce_x = [{ kind = \"orders\", times = [0, 1], terms = [{ order = 2, amplitude = \"5 N\" }] }]", "sprockets[1].force_x[0].times", 25, "has no `times`"),
+    ("mass = \"4 kg\"", "mass = \"4 kg\"\nforce_x = [{ kind = \"orders\", of = \"drver\", terms = [{ order = 2, amplitude = \"5 N\" }] }]", "sprockets[1].force_x[0].of", 25, "no shaft or sprocket is named `drver`; did you mean `driver`?"),
+    ("mass = \"4 kg\"", "mass = \"4 kg\"\nforce_x = [{ kind = \"angle-table\", angles = [0, \"360 deg\"], forces = [0, \"5 N\"] }]", "sprockets[1].force_x[0].forces", 25, "the force jumps from 5 to 0 N where it repeats; give the same force"),
+    ("mass = \"4 kg\"", "mass = \"4 kg\"\nforce_x = [{ kind = \"ramp\", force = \"5 N\", duration = 0 }]", "sprockets[1].force_x[0].duration", 25, "0, must be positive [s]"),
+    ("name = \"slide\"\ncarrier", "name = \"slide\"\nforce_y = [{ kind = \"harmonic\", order = 2, amplitude = \"5 N\" }]\ncarrier", "tensioners[0].force_y[0].of", 31, "a tensioner has no shaft of its own; name in `of`"),
+    ("name = \"slide\"\ncarrier", "name = \"slide\"\nforce_at = [0, 0]\ncarrier", "tensioners[0].force_at", 31, "a force on a slider needs no point; leave it out"),
     // Ranges of counts.
     ("links = 78", "links = 0", "chain.links", 5, "0, must be at least 1"),
     ("links = 78", "links = 2", "chain.links", 5, "at least 3 in a closed chain"),
