@@ -23,6 +23,10 @@ roller_diameter = "7.75 mm"
 [contact.teeth]
 law = { kind = "linear", stiffness = "50 MN/m" }
 restitution = 1
+series = 0
+friction = "none"
+[contact.joints]
+friction = "none"
 [[sprockets]]
 name = "held"
 teeth = 20
@@ -146,7 +150,7 @@ fn a_force_by_orders_meets_the_resonance_that_the_modes_tell() {
         .iter()
         .max_by(|a, b| share(a).total_cmp(&share(b)));
     let shaken = TAU * largest.unwrap().frequency;
-    let force = 0.5;
+    let force = 0.01;
     let scene = format!(
         "{SPRINGS}\nforce_x = [{{ kind = \"orders\", of = \"shaker\", terms = [{{ order = 1, amplitude = {force} }}] }}]\n\
          [[shafts]]\nname = \"shaker\"\nmotion = {{ kind = \"constant\", speed = {shaken} }}"
@@ -254,25 +258,25 @@ fn the_work_of_a_force_on_springs_stands_in_the_ledger() {
     simulation.advance_to(0.0).unwrap();
     let control = Control::ForceX("moved".into());
     simulation.set(&control, 200.0).unwrap();
+    // A step ends where something changes.
+    simulation.set_at(2e-3, &control, 0.0).unwrap();
     let start = simulation.observation().clone();
     let end = simulation.advance_to(2e-3).unwrap().clone();
     let work = end.energy.flow(Flow::Forces);
     let exact = 200.0 * (end.sprocket_x[1] - start.sprocket_x[1]);
     assert!(exact > 1e-3, "{exact}");
     assert!((work / exact - 1.0).abs() < 1e-9, "{work} {exact}");
-    assert!(
-        end.energy.residual(&start.energy).abs() < 1e-9 * start.energy.stored(),
-        "{}",
-        end.energy.residual(&start.energy)
-    );
-    // It has the same motion where the scene gives the force.
+    let residual = end.energy.residual(&start.energy);
+    assert!(residual.abs() < 1e-4 * exact, "{residual} of {exact}");
+    // It has the same motion beside a force of the scene.
     let given = format!(
         "{SPRINGS}\nforce_x = [{{ kind = \"time-table\", times = [0, 1], forces = [0, 0] }}]"
     );
     let mut other = moving(&assembled(&pair(&given)), Stepping::Rk4);
     other.advance_to(0.0).unwrap();
     other.set(&control, 200.0).unwrap();
-    assert_eq!(bits(other.advance_to(2e-3).unwrap()), bits(&end));
+    let other = other.advance_to(2e-3).unwrap().sprocket_x[1];
+    assert!((other - end.sprocket_x[1]).abs() < 1e-9 * exact / 200.0);
 }
 
 /// The bearing of a fixed centre bears it, and nothing else is moved by a bit; a motion that is given works against it.
@@ -346,8 +350,13 @@ fn a_force_over_an_angle_has_the_forcings_of_its_shaft() {
     );
     let assembled = assembled(&pair(&scene));
     // One period in two turns.
-    let slowest = assembled.slowest_forcing();
-    assert!((slowest - 2.0 * TAU / 50.0).abs() < 1e-12, "{slowest}");
+    let period = 2.0 * TAU / 50.0;
+    let forcings = assembled.forcings();
+    let mut periods = forcings.iter().map(|it| it.period);
+    assert!(
+        periods.any(|it| (it - period).abs() < 1e-12),
+        "{forcings:?}"
+    );
     let ramp = format!("{SPRINGS}\nforce_y = [{{ kind = \"ramp\", force = 10, duration = 1 }}]");
     let why = self::assembled(&pair(&ramp)).function_of_time();
     assert_eq!(why, Some("a force that is switched on at a time"));

@@ -112,24 +112,27 @@ impl Bodies {
         centres.chain(self.slides.iter().flat_map(|it| it.forces.all()))
     }
 
-    /// Whether a force of the scene acts on something that moves by itself.
-    pub(crate) fn are_forced(&self) -> bool {
-        let moves = |wheel: &Wheel| match wheel.support {
+    /// The forces of the scene on all that moves by itself, body by body.
+    fn moving_forces(&self) -> impl Iterator<Item = &Forces> {
+        let moves = |wheel: &&Wheel| match wheel.support {
             WheelSupport::Fixed | WheelSupport::Prescribed { .. } => false,
             WheelSupport::Springs { .. } => true,
             WheelSupport::Carried(slide) => self.slides[slide].dof.is_some(),
         };
-        let mut wheels = self.wheels.iter();
-        let mut slides = self.slides.iter();
-        wheels.any(|it| !it.forces.is_empty() && moves(it))
-            || slides.any(|it| !it.forces.is_empty() && it.dof.is_some())
+        let wheels = self.wheels.iter().filter(moves).map(|it| &it.forces);
+        let slides = self.slides.iter().filter(|it| it.dof.is_some());
+        let all = wheels.chain(slides.map(|it| &it.forces));
+        all.filter(|forces| !forces.is_empty())
     }
 
-    /// The largest force of the scene at a time, where no shaft has turned yet \[N\].
+    /// Whether a force of the scene acts on something that moves by itself.
+    pub(crate) fn are_forced(&self) -> bool {
+        self.moving_forces().next().is_some()
+    }
+
+    /// The largest of them at a time, where no shaft has turned yet \[N\].
     pub(crate) fn largest_force(&self, t: f64) -> f64 {
-        let centres = self.wheels.iter().map(|it| &it.forces);
-        let all = centres.chain(self.slides.iter().map(|it| &it.forces));
-        let sizes = all.map(|forces| {
+        let sizes = self.moving_forces().map(|forces| {
             let [x, y] = forces.unturned(t);
             x.hypot(y)
         });
