@@ -172,16 +172,16 @@ fn a_force_by_orders_meets_the_resonance_that_the_modes_tell() {
         each.sum::<f64>()
     };
     let (mut off, mut greatest) = (0.0_f64, 0.0_f64);
-    for k in 1..=60 {
+    for k in 1..=30 {
         let t = f64::from(k) * 0.1 * TAU / shaken;
         let moved = simulation.advance_to(t).unwrap().sprocket_x[1] - start;
         off = off.max((moved - exact(t)).abs());
         greatest = greatest.max(exact(t).abs());
     }
     assert!(off < 1e-3 * greatest, "{off:e} of {greatest:e}");
-    // Six periods: π n times the static displacement of the mode.
+    // Three periods: π n times the static displacement of the mode.
     let at_rest = compliance(&modes, 1)[0] * force;
-    assert!(greatest > 10.0 * at_rest, "{greatest:e} {at_rest:e}");
+    assert!(greatest > 5.0 * at_rest, "{greatest:e} {at_rest:e}");
 }
 
 /// F·d = 2 T d·x: the part along the way is on the spans, the rest on the guide.

@@ -154,7 +154,7 @@ const CASES: &[Mistake] = &[
     ("kind = \"constant\", torque = \"-40 N m\"", "kind = \"angle-table\", of = \"drivr\", angles = [\"0 deg\", \"360 deg\"], torques = [1, 1]", "sprockets[1].load[0].of", 23, "did you mean `driver`?"),
     ("kind = \"constant\", torque = \"-40 N m\"", "kind = \"orders\", of = \"bar\", terms = [{ order = 2, amplitude = 1 }]", "sprockets[1].load[0].of", 23, "no shaft or sprocket is named `bar`"),
     ("kind = \"constant\", torque = \"-40 N m\"", "kind = \"orders\", terms = [{ order = 0, amplitude = 1 }]", "sprockets[1].load[0].terms[0].order", 23, "0, must be positive; the mean is no order: give that of a motion as its `speed`"),
-    ("kind = \"constant\", speed = \"300 rpm\"", "kind = \"orders\", speed = 3, terms = [{ order = 0, amplitude = 0.1 }]", "sprockets[0].motion.terms[0].order", 17, "that of a torque as one of the kind `constant` in the same list"),
+    ("kind = \"constant\", speed = \"300 rpm\"", "kind = \"orders\", speed = 3, terms = [{ order = 0, amplitude = 0.1 }]", "sprockets[0].motion.terms[0].order", 17, "that of a torque or force as one of the kind `constant` in the same list"),
     ("kind = \"constant\", torque = \"-40 N m\"", "kind = \"orders\", terms = [{ order = 2, amplitude = \"3 mm\" }]", "sprockets[1].load[0].terms[0].amplitude", 23, "torque"),
     ("kind = \"constant\", speed = \"300 rpm\"", "kind = \"orders\", terms = [{ order = 2, amplitude = 0.1 }]", "sprockets[0].motion.speed", 17, "give the mean speed, or in `of`"),
     ("kind = \"constant\", speed = \"300 rpm\"", "kind = \"orders\", of = \"driven\", terms = [{ order = 2, amplitude = 0.1 }]", "sprockets[0].motion.of", 17, "`driven` has no mean speed"),
