@@ -105,6 +105,18 @@ impl Bodies {
                 }
             }
         }
+        self.move_slides(at, prediction, a, (rates, accounts), (flows, pushes));
+    }
+
+    /// Accelerations of the tensioners; what else acts on their coordinates stands there.
+    fn move_slides(
+        &self,
+        at: Moment<'_>,
+        prediction: Option<Prediction<'_>>,
+        a: &mut [f64],
+        (rates, accounts): (&mut [f64], &mut AccountRates<'_>),
+        (flows, pushes): (&mut [f64], &mut [Slopes]),
+    ) {
         for (i, slide) in self.slides.iter().enumerate() {
             let Some(dof) = slide.dof else { continue };
             let mut pose = slide.pose(at.q, at.v);

@@ -36,12 +36,14 @@ impl System {
                     "its motion is given, and no torque changes it; give it an inertia and no motion, and set its speed until a torque is to act",
                 ),
             },
-            Input::Speed { .. } | Input::Angle { .. } | Input::Load { .. } => None,
+            Input::Speed { .. }
+            | Input::Angle { .. }
+            | Input::Load { .. }
+            | Input::CentreForce { .. } => None,
             Input::Force { tensioner: index } => match tensioner(index).dof {
                 Some(_) => None,
                 None => Some("it is locked where it was assembled; give it a spring"),
             },
-            Input::CentreForce { .. } => None,
             Input::CarrierForce {
                 tensioner: index, ..
             } => {

@@ -33,8 +33,8 @@ pub(super) fn resolve(
         .map(|(i, text)| {
             let mut at = findings.at(format!("tensioners[{i}]"));
             let found = forces([&text.force_x, &text.force_y], false, ends, at.again())?;
-            let place = place(text, !found.is_empty(), at.key("force_at"))?;
-            Some((found, place))
+            let placed = is_placed(text, !found.is_empty(), at.key("force_at"));
+            placed.then(|| (found, text.force_at.map(point)))
         })
         .collect();
     Some(ForcesOfBodies {
@@ -54,25 +54,20 @@ fn forces(
     Some(Forces { x: x?, y: y? })
 }
 
-/// The point on which the forces on a carrier act, none of a slider; refused where it is missing, or means nothing.
-fn place(
-    text: &schema::Tensioner,
-    is_forced: bool,
-    mut at: Cursor<'_, '_>,
-) -> Option<Option<Point>> {
+/// Whether the point on which forces on a carrier act is given where it has to be; refused where it is missing, or means nothing.
+fn is_placed(text: &schema::Tensioner, is_forced: bool, mut at: Cursor<'_, '_>) -> bool {
     let is_arm = text.carrier.word("kind") == "arm";
-    match text.force_at {
-        None if is_arm && is_forced => {
-            let hint =
-                "give the point of the arm on which the forces act, such as [\"0.1 m\", \"0.2 m\"]";
-            at.refuse("missing", hint);
-            None
-        }
-        Some(_) if !is_arm => {
-            let hint = "leave it out: all points of a slider move alike";
-            at.refuse("a force on a slider needs no point", hint);
-            None
-        }
-        given => Some(given.map(point)),
+    let given = text.force_at.is_some();
+    if is_arm && is_forced && !given {
+        let hint =
+            "give the point of the arm on which the forces act, such as [\"0.1 m\", \"0.2 m\"]";
+        at.refuse("missing", hint);
+        return false;
     }
+    if given && !is_arm {
+        let hint = "leave it out: all points of a slider move alike";
+        at.refuse("a force on a slider needs no point", hint);
+        return false;
+    }
+    true
 }
