@@ -15,8 +15,10 @@ from chaindrive.plot.units import in_trade
 
 __all__ = ["front_page"]
 
-#: Units of what motions and torques say, in SI; a motion has amplitudes in radians.
-_UNITS = {"speed": "rad/s", "torque": "N m", "from": "rad/s", "to": "rad/s"}
+#: Units of forces on centres and carriers, by their lists.
+_FORCES = {"force_x": "N", "force_y": "N"}
+#: Units of what motions, torques and forces say, in SI; a motion has amplitudes in radians.
+_UNITS = {"speed": "rad/s", "torque": "N m", "force": "N", "from": "rad/s", "to": "rad/s"}
 #: Sentences of a verdict that the first page has room for.
 _SENTENCES = 2
 
@@ -88,17 +90,13 @@ def _sprockets(run: xr.Dataset, told: Mapping[str, Any] | None) -> str:
 
 
 def _load_case(run: xr.Dataset) -> Iterator[str]:
-    """Motions, torques, pretension and tensioners of the scene, a sentence each."""
+    """Motions, torques, forces, pretension and tensioners of the scene, a sentence each."""
     scene = tomllib.loads(str(run.attrs.get("resolved_scene", "")))
     for body in (*scene.get("sprockets", ()), *scene.get("shafts", ())):
         motion = body.get("motion", {})
         if motion.get("kind", "held") != "held":
             yield f"{body['name']}: motion {_acting(motion, 'rad')}."
-        for use in ("drive", "load"):
-            torques = body.get(use, ())
-            torques = [torques] if isinstance(torques, Mapping) else torques
-            if torques:
-                yield f"{body['name']}: {use} {'; '.join(_acting(it, 'N m') for it in torques)}."
+        yield from _uses(body, {"drive": "N m", "load": "N m", **_FORCES}, body["name"])
     pretension = scene.get("route", {}).get("pretension")
     if pretension:
         yield f"Pretension {_told(float(pretension), 'N')}."
@@ -108,18 +106,29 @@ def _load_case(run: xr.Dataset) -> Iterator[str]:
         by = f", preload {_told(float(preload), 'N')}" if preload is not None else ""
         kind = tensioner.get("carrier", {}).get("kind", "carrier")
         yield f"Tensioner {tensioner['name']}: {kind}, {push.get('kind', 'no push')}{by}."
+        yield from _uses(tensioner, _FORCES, f"Tensioner {tensioner['name']}")
+
+
+def _uses(body: Mapping[str, Any], units: Mapping[str, str], name: str) -> Iterator[str]:
+    """Tell the torques and forces on a body, a sentence a list; ``units`` by the keys of lists."""
+    for use, unit in units.items():
+        acting = body.get(use, ())
+        acting = [acting] if isinstance(acting, Mapping) else acting
+        if acting:
+            yield f"{name}: {use} {'; '.join(_acting(it, unit) for it in acting)}."
 
 
 def _acting(it: Mapping[str, Any], unit: str) -> str:
-    """Return a motion or a torque in words; ``unit`` is that of its amplitudes."""
+    """Return a motion, a torque or a force in words; ``unit`` is that of its amplitudes."""
     words = [str(it.get("kind", ""))]
     words += [f"{key} {_told(float(it[key]), of)}" for key, of in _UNITS.items() if key in it]
     terms = [it] if "order" in it else it.get("terms", ())
     for term in terms:
         at = f"order {term['order']:g}" if "order" in term else f"{term.get('frequency', 0):g} Hz"
         words.append(f"{at} with {_told(float(term['amplitude']), unit)}")
-    if "torques" in it:
-        values = np.asarray(it["torques"], dtype=float)
+    table = next((it[key] for key in ("torques", "forces") if key in it), None)
+    if table is not None:
+        values = np.asarray(table, dtype=float)
         low, high = _told(float(values.min()), unit), _told(float(values.max()), unit)
         words.append(f"from {low} to {high}")
     return ", ".join(words)

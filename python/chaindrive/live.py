@@ -298,6 +298,41 @@ class Simulation:
         """
         self._inner.set("force", tensioner, (force, over, rate), at)
 
+    def set_centre_force(
+        self,
+        sprocket: str,
+        force: tuple[float, float],
+        *,
+        over: float = 0.0,
+        rate: tuple[float, float] = (0.0, 0.0),
+        at: float | None = None,
+    ) -> None:
+        """Set a force on the centre of a sprocket, beside those of the scene.
+
+        The bearing of a fixed centre bears it, a prescribed motion works against it; on springs or
+        a tensioner it moves the centre. Its work is ``forces_supplied`` of ``energy_flows``.
+
+        Parameters
+        ----------
+        sprocket
+            Its name; or ``tensioners.NAME``, the carrier itself, where forces of the scene act.
+        force
+            Along x and y [N]; it acts until another one is set.
+        over
+            Time in which it comes there from what it is [s]; zero for a jump.
+        rate
+            How it goes on from there, along x and y [N/s].
+        at
+            From when on [s]; from the last reading on when absent.
+
+        Raises
+        ------
+        ParameterError
+            No sprocket or carrier has this name, an arm has no ``force_at``, or the time is past.
+        """
+        for axis, to, further in zip("xy", force, rate, strict=True):
+            self._inner.set(f"force_{axis}", sprocket, (to, over, further), at)
+
     def set_centre_acceleration(
         self,
         sprocket: str,

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from chaindrive._core import NewFile
 from chaindrive.errors import WriteError, tell
 from chaindrive.extras import extra
-from chaindrive.plot.scheme import CARRIER, GUIDE, OUTLINE, PLATES, STEEL
+from chaindrive.plot.scheme import CARRIER, FORCE, GUIDE, OUTLINE, PLATES, STEEL
 from chaindrive.plot.units import in_trade, written
 from chaindrive.pose import drive_of
 from chaindrive.progress import told
@@ -202,13 +202,15 @@ class _Stage:
             sprocket = body["kind"] == "sprocket"
             face: dict[str, Any] = {"facecolor": to_rgba(STEEL, 0.35), "edgecolor": OUTLINE}
             face |= {"linewidth": 0.7, "zorder": 2}
-            line = {"facecolor": "none", "zorder": 1.5}
+            line: dict[str, Any] = {"facecolor": "none"}
             if len(body["backing"]):
                 backing = {"facecolor": GUIDE, "edgecolor": "none", "alpha": 0.3, "zorder": 1.4}
                 patch = PathPatch(Outline(body["backing"]), **backing)
                 self.axes.add_patch(patch)
                 self.parts.append((index, patch))
-            colour, width = (GUIDE, 1.8) if body["kind"] == "guide" else (CARRIER, 2.5)
+            lines = {"guide": (GUIDE, 1.8), "force": (FORCE, 1.8), "carrier-force": (FORCE, 1.8)}
+            colour, width = lines.get(body["kind"], (CARRIER, 2.5))
+            line["zorder"] = 6 if colour == FORCE else 1.5
             for outline in body["outlines"]:
                 look = face if sprocket else {**line, "edgecolor": colour, "linewidth": width}
                 patch = PathPatch(Outline(outline, closed=False), **look)

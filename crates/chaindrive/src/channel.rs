@@ -114,6 +114,10 @@ channels! {
     SprocketTorque, "sprocket_torque", "N m", Sprocket, "torque of the chain on the sprocket";
     SprocketForceX, "sprocket_force_x", "N", Sprocket, "resultant of the chain on the sprocket, x";
     SprocketForceY, "sprocket_force_y", "N", Sprocket, "resultant of the chain on the sprocket, y";
+    CentreForceX, "centre_force_x", "N", Sprocket, "force from outside on the sprocket centre, x";
+    CentreForceY, "centre_force_y", "N", Sprocket, "force from outside on the sprocket centre, y";
+    SupportForceX, "support_force_x", "N", Sprocket, "force of its support on the sprocket centre, x";
+    SupportForceY, "support_force_y", "N", Sprocket, "force of its support on the sprocket centre, y";
     SprocketX, "sprocket_x", "m", Sprocket, "sprocket centre, x";
     SprocketY, "sprocket_y", "m", Sprocket, "sprocket centre, y";
     ShaftAngle, "shaft_angle", "rad", Shaft, "rotation since the start, counter-clockwise";
@@ -123,6 +127,8 @@ channels! {
     GuideForceY, "guide_force_y", "N", Guide, "resultant of the chain on the guide, y";
     TensionerPosition, "tensioner_position", "m", Tensioner, "travel of a slider in m, or angle of an arm in rad";
     TensionerForce, "tensioner_force", "N", Tensioner, "push of the tensioner in N, or torque of a bare arm in N m";
+    CarrierForceX, "carrier_force_x", "N", Tensioner, "force from outside on the tensioner itself, x";
+    CarrierForceY, "carrier_force_y", "N", Tensioner, "force from outside on the tensioner itself, y";
     OilPressure, "oil_pressure", "Pa", OilColumn, "pressure of compressible oil in a tensioner above that of the air";
     EnergyKinetic, "energy_kinetic", "J", None, "kinetic energy";
     EnergyStored, "energy_stored", "J", None, "potential energy of springs, contacts and weight";
@@ -156,6 +162,24 @@ impl Channel {
     pub const WHERE_BODIES_MOVE: [Self; 3] =
         [Self::SprocketX, Self::SprocketY, Self::TensionerPosition];
 
+    /// Channels that a run records beside [`DEFAULT`](Self::DEFAULT) unless asked otherwise, where a scene has forces on centres or on carriers.
+    pub const WHERE_FORCES_ACT: [Self; 4] = [
+        Self::CentreForceX,
+        Self::CentreForceY,
+        Self::CarrierForceX,
+        Self::CarrierForceY,
+    ];
+
+    /// Whether a drive has forces that the channel records.
+    fn is_forced(self, drive: &Parts) -> bool {
+        match self {
+            Self::CentreForceX | Self::CentreForceY => {
+                drive.sprockets.iter().any(|it| !it.forces.is_empty())
+            }
+            _ => drive.tensioners.iter().any(|it| !it.forces.is_empty()),
+        }
+    }
+
     /// Channels that a run of a drive records unless others are asked for.
     pub fn defaults(drive: &Parts) -> Vec<Self> {
         let mut channels = Self::DEFAULT.to_vec();
@@ -166,6 +190,8 @@ impl Channel {
             Self::TensionerPosition => !drive.tensioners.is_empty(),
             _ => moved,
         }));
+        let forced = Self::WHERE_FORCES_ACT.into_iter();
+        channels.extend(forced.filter(|channel| channel.is_forced(drive)));
         channels
     }
 
@@ -303,7 +329,11 @@ impl Channel {
     /// Sights that it needs of a state.
     pub(crate) fn sights(self) -> Sights {
         match self {
-            Self::Contacts | Self::ContactDepth | Self::FilmThickness => Sights::LAWS,
+            Self::Contacts
+            | Self::ContactDepth
+            | Self::FilmThickness
+            | Self::SupportForceX
+            | Self::SupportForceY => Sights::LAWS,
             Self::StrandTensionMax | Self::StrandTensionMin => Sights::LAWS.and(Sights::STRANDS),
             Self::EnergyKinetic
             | Self::EnergyStored
@@ -363,6 +393,10 @@ impl Channel {
             Self::SprocketTorque => to.extend(&sample.sprocket_torque),
             Self::SprocketForceX => to.extend(&sample.sprocket_force_x),
             Self::SprocketForceY => to.extend(&sample.sprocket_force_y),
+            Self::CentreForceX => to.extend(&sample.centre_force_x),
+            Self::CentreForceY => to.extend(&sample.centre_force_y),
+            Self::SupportForceX => to.extend(&sample.support_force_x),
+            Self::SupportForceY => to.extend(&sample.support_force_y),
             Self::SprocketX => to.extend(&sample.sprocket_x),
             Self::SprocketY => to.extend(&sample.sprocket_y),
             Self::ShaftAngle => to.extend(&sample.shaft_angle),
@@ -372,6 +406,8 @@ impl Channel {
             Self::GuideForceY => to.extend(&sample.guide_force_y),
             Self::TensionerPosition => to.extend(&sample.tensioner_position),
             Self::TensionerForce => to.extend(&sample.tensioner_force),
+            Self::CarrierForceX => to.extend(&sample.carrier_force_x),
+            Self::CarrierForceY => to.extend(&sample.carrier_force_y),
             Self::OilPressure => to.extend(&sample.oil_pressure),
             Self::EnergyKinetic => to.push(energy.kinetic()),
             Self::EnergyStored => to.push(energy.stored()),

@@ -5,6 +5,7 @@
 
 mod alignment;
 mod cost;
+mod forces;
 mod free_train;
 mod links;
 mod oil;
@@ -28,6 +29,7 @@ use serde::{Serialize, Serializer};
 
 pub use alignment::AlignmentFacts;
 pub use cost::{Cost, foretelling, foretold};
+pub use forces::ForceFacts;
 pub use free_train::FreeTrainFacts;
 pub use links::{ContactFacts, LinkFacts, left_out};
 pub use oil::OilFacts;
@@ -64,6 +66,8 @@ pub struct Description {
     pub oil: Option<OilFacts>,
     /// Shafts that torques turn, and no motion.
     pub free_trains: Vec<FreeTrainFacts>,
+    /// Forces from outside on centres and carriers.
+    pub forces: Vec<ForceFacts>,
     /// The static states on the way to the start.
     pub statics: Vec<StaticStage>,
     /// Moving parts and contacts.
@@ -300,6 +304,7 @@ impl Description {
             stacks: stack::of(drive),
             oil: oil::of(drive),
             free_trains: free_train::of(assembled),
+            forces: forces::of(assembled),
             stops: route::stops(drive, assembled, &start),
             statics: static_stages(drive, assembled),
             model: model(drive, assembled),

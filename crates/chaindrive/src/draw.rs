@@ -32,6 +32,7 @@ const STYLE: &str = "\
 .chaindrive .roller{fill:#8d99a6;fill-opacity:.2}
 .chaindrive .plate{fill:#2f7ec2;fill-opacity:.45;stroke-width:.4}
 .chaindrive .rotation{stroke:#767e87;stroke-width:1.4}
+.chaindrive .force,.chaindrive .carrier-force{stroke:#cf4a7c;stroke-width:2}
 .chaindrive .mark{stroke:#d6324a;stroke-width:2}
 .chaindrive text{font-family:sans-serif;fill:#767e87}
 .chaindrive .told{fill:#d6324a}";
@@ -41,11 +42,12 @@ pub fn svg(figure: &Figure, pose: &Pose, title: &str) -> String {
     let view = View::of(figure, pose);
     let mut out = view.head(title, figure.problem.as_deref(), STYLE);
     let bodies = || figure.bodies.iter().zip(&pose.placements);
-    // Carriers lie behind what they carry, and sprockets before guides.
+    // Carriers lie behind what they carry, sprockets before guides, and arrows of forces before all.
     let layers = [
         |kind: &BodyKind| matches!(kind, BodyKind::Carrier { .. } | BodyKind::Plunger),
         |kind: &BodyKind| matches!(kind, BodyKind::Guide { .. }),
         |kind: &BodyKind| matches!(kind, BodyKind::Sprocket { .. }),
+        |kind: &BodyKind| matches!(kind, BodyKind::Force { .. }),
     ];
     for within in layers {
         for (index, (body, placement)) in bodies().enumerate() {
@@ -107,7 +109,10 @@ fn body(out: &mut String, body: &Body, placement: &Placement) {
             );
             line(out, format_args!("{pivot}"));
         }
-        BodyKind::Guide { .. } | BodyKind::Carrier { .. } | BodyKind::Plunger => {}
+        BodyKind::Guide { .. }
+        | BodyKind::Carrier { .. }
+        | BodyKind::Plunger
+        | BodyKind::Force { .. } => {}
     }
 }
 

@@ -99,7 +99,7 @@ statistics! {
     ImpactForceMax, "impact_force_max", "N", Sprocket(|it| it.of_any(it.greatest)), "largest force of all impacts";
     ImpactImpulse, "impact_impulse", "N s", Sprocket(|it| it.of_any(it.impulse(0.5))), "median of the impulses of impacts";
     ImpactSpeed, "impact_speed", "m/s", Sprocket(|it| it.of_any(it.speed(0.5))), "median of the closing speeds of impacts, along the normal of the tooth";
-    EnergySupplied, "energy_supplied_total", "J", Run(|_, it| it.energy_supplied()), "energy put in by drivers, motions and torques";
+    EnergySupplied, "energy_supplied_total", "J", Run(|_, it| it.energy_supplied()), "energy put in by drivers, motions, torques and forces from outside";
     EnergyDissipated, "energy_dissipated_total", "J", Run(|_, it| it.energy_dissipated()), "energy lost";
     EnergyResidualMax, "energy_residual_max", "J", Run(|_, it| it.residual), "largest energy unaccounted for, with its sign";
     ContactCount, "contact_count", "1", Kind(|it| it.count as f64), "number of contacts logged";

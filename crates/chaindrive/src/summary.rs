@@ -394,10 +394,10 @@ impl Summary {
         }
     }
 
-    /// Energy put in by drivers, motions and driving torques since the start \[J\].
+    /// Energy put in by drivers, motions, driving torques and forces from outside since the start \[J\].
     pub fn energy_supplied(&self) -> f64 {
         let start = self.start.unwrap_or_default();
-        [Flow::Driver, Flow::Motions, Flow::DriveTorque]
+        [Flow::Driver, Flow::Motions, Flow::DriveTorque, Flow::Forces]
             .iter()
             .map(|&flow| (self.last.flow(flow) - start.flow(flow)).abs())
             .sum()

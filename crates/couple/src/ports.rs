@@ -105,6 +105,7 @@ impl Ports {
         );
         builder.shafts();
         builder.tensioners();
+        builder.forces();
         builder.centres();
         builder.tunable();
         let held = Kind::Choice {
@@ -248,6 +249,7 @@ impl Builder<'_> {
             let signal = |control: Control, kind, choice, start| Signal {
                 control,
                 kind,
+                carried: None,
                 shaft: Some((at, choice)),
                 start,
                 place,
@@ -285,20 +287,54 @@ impl Builder<'_> {
                 continue;
             }
             let name = &tensioner.name;
-            let signal = Signal {
-                control: Control::Force(name.clone()),
-                kind: Acts::Force,
-                shaft: None,
-                start: 0.0,
-                place: first.map(|first| first + index),
-                speed: None,
-                torques: Vec::new(),
-            };
+            let place = first.map(|first| first + index);
+            let signal = Signal::force(Control::Force(name.clone()), place);
             let text = format!("force on {name} towards positive coordinates, beside its push");
             // What works along an angle is a torque.
             let unit = if units[index].0 == "rad" { "N m" } else { "N" };
             self.signal(format!("set_force[{name}]"), text, unit, signal);
         }
+    }
+
+    /// Forces on the centres of sprockets, and on carriers.
+    fn forces(&mut self) {
+        type Made = fn(String) -> Control;
+        let axes: [(&str, Channel, Made); 2] = [
+            ("x", Channel::SprocketX, Control::ForceX),
+            ("y", Channel::SprocketY, Control::ForceY),
+        ];
+        let parts = self.parts;
+        for (index, sprocket) in parts.sprockets.iter().enumerate() {
+            for (along, channel, control) in axes {
+                let place = self.first(channel).map(|first| first + index);
+                let signal = Signal::force(control(sprocket.name.clone()), place);
+                self.force(along, &sprocket.name, signal);
+            }
+        }
+        let first = self.first(Channel::TensionerPosition);
+        for (index, tensioner) in parts.tensioners.iter().enumerate() {
+            for (axis, (along, _, control)) in axes.into_iter().enumerate() {
+                let input = Input::CarrierForce {
+                    tensioner: index,
+                    axis,
+                };
+                if self.system.refuses(input).is_some() {
+                    continue;
+                }
+                let name = format!("tensioners.{}", tensioner.name);
+                let place = first.map(|first| first + index);
+                let signal = Signal {
+                    carried: Some((tensioner.clone(), axis)),
+                    ..Signal::force(control(name.clone()), place)
+                };
+                self.force(along, &name, signal);
+            }
+        }
+    }
+
+    fn force(&mut self, along: &str, name: &str, signal: Signal) {
+        let text = format!("force on {name} along {along}, beside those of the scene");
+        self.signal(format!("set_force_{along}[{name}]"), text, "N", signal);
     }
 
     fn centres(&mut self) {
@@ -316,6 +352,7 @@ impl Builder<'_> {
                 let signal = Signal {
                     control,
                     kind: Acts::Centre,
+                    carried: None,
                     shaft: None,
                     start: self.value(place),
                     place,
@@ -352,6 +389,7 @@ impl Builder<'_> {
             let signal = Signal {
                 control: Control::Parameter(tunable.place.clone()),
                 kind: Acts::Parameter,
+                carried: None,
                 shaft: None,
                 start,
                 place: None,

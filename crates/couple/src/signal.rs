@@ -20,6 +20,7 @@
 //! The first is the sum Σ (τ_k − τ_{k−1}) ω h of held inputs. It is negative where the coupling makes energy: one that grows unstable shows it.
 
 use chaindrive::{Control, Course};
+use chaindrive_mechanics::Tensioner;
 use serde::{Deserialize, Serialize};
 
 /// Way of a centre that rounding alone makes \[m\]. *Assumed*: far below any clearance.
@@ -46,11 +47,38 @@ pub(crate) struct Signal {
     /// The shaft by its place among the shafts, and the choice with which the input acts.
     pub(crate) shaft: Option<(usize, i64)>,
     pub(crate) start: f64,
-    /// Its coordinate among the values read.
+    /// Its coordinate among the values read, or that of the tensioner that carries its point.
     pub(crate) place: Option<usize>,
+    /// The tensioner on a point of which it acts, and the axis.
+    pub(crate) carried: Option<(Tensioner, usize)>,
     /// Speed of its shaft, and the torques of chains on it, among the values read.
     pub(crate) speed: Option<usize>,
     pub(crate) torques: Vec<usize>,
+}
+
+impl Signal {
+    /// A force, zero at the start, whose point has its coordinate at this place among the values read.
+    pub(crate) fn force(control: Control, place: Option<usize>) -> Self {
+        Self {
+            control,
+            kind: Kind::Force,
+            shaft: None,
+            start: 0.0,
+            place,
+            carried: None,
+            speed: None,
+            torques: Vec::new(),
+        }
+    }
+
+    /// Its coordinate.
+    fn coordinate(&self, values: &[f64]) -> f64 {
+        let read = self.place.map_or(0.0, |index| values[index]);
+        let carried = self.carried.as_ref();
+        carried.map_or(read, |(tensioner, axis)| {
+            tensioner.forced_place(read)[*axis]
+        })
+    }
 }
 
 /// An input as it stands.
@@ -127,7 +155,7 @@ impl InputState {
         point: CommunicationPoint,
         values: &[f64],
     ) -> (Vec<Course>, ExchangedEnergy) {
-        let place = signal.place.map_or(0.0, |index| values[index]);
+        let place = signal.coordinate(values);
         let torque: f64 = signal.torques.iter().map(|index| values[*index]).sum();
         let exchanged = self.exchanged(signal.kind, point.last_step, place, torque);
         let given = self.slope.take();
@@ -200,7 +228,7 @@ impl InputState {
 
     /// Work in the last step \[J\], until the next one begins.
     pub(crate) fn work_so_far(&self, signal: &Signal, last_step: f64, values: &[f64]) -> f64 {
-        let place = signal.place.map_or(0.0, |index| values[index]);
+        let place = signal.coordinate(values);
         let torque = signal.torques.iter().map(|index| values[*index]).sum();
         self.exchanged(signal.kind, last_step, place, torque).work
     }

@@ -75,6 +75,8 @@ pub struct SprocketAccount {
     pub force: [f64; 2],
     /// Energy lost in the dampers of its bearing \[J\].
     pub damped: f64,
+    /// Work of forces from outside on its centre \[J\].
+    pub forced: f64,
 }
 
 /// Work of every source on a shaft since the start.
@@ -106,6 +108,8 @@ pub struct TensionerAccount {
     pub push: f64,
     /// Energy lost in it \[J\].
     pub lost: f64,
+    /// Work of forces from outside on it, beside those on the centres that it carries \[J\].
+    pub forced: f64,
 }
 
 /// The accounts of all bodies.
@@ -141,7 +145,7 @@ trait Entry: Sized {
 }
 
 impl Entry for SprocketAccount {
-    const LENGTH: usize = 5;
+    const LENGTH: usize = 6;
 
     fn from_row(row: &[f64]) -> Self {
         Self {
@@ -149,6 +153,7 @@ impl Entry for SprocketAccount {
             torque: row[1],
             force: [row[2], row[3]],
             damped: row[4],
+            forced: row[5],
         }
     }
 }
@@ -180,13 +185,14 @@ impl Entry for GuideAccount {
 }
 
 impl Entry for TensionerAccount {
-    const LENGTH: usize = 3;
+    const LENGTH: usize = 4;
 
     fn from_row(row: &[f64]) -> Self {
         Self {
             course: row[0],
             push: row[1],
             lost: row[2],
+            forced: row[3],
         }
     }
 }
@@ -319,6 +325,21 @@ impl AccountRates<'_> {
         }
     }
 
+    /// Adds what forces from outside do on the centre of a sprocket \[W\].
+    pub(crate) fn force_centre(&mut self, index: usize, power: f64) {
+        if let Some(rate) = self.sprockets.get_mut(index * SprocketAccount::LENGTH + 5) {
+            *rate += power;
+        }
+    }
+
+    /// Adds what forces from outside do on a tensioner itself \[W\].
+    pub(crate) fn force_carrier(&mut self, index: usize, power: f64) {
+        let place = index * TensionerAccount::LENGTH + 3;
+        if let Some(rate) = self.tensioners.get_mut(place) {
+            *rate += power;
+        }
+    }
+
     /// Sets the rates of a guide: force of the chain \[N\], and what is lost \[W\].
     pub(crate) fn of_guide(&mut self, index: usize, force: [f64; 2], lost: f64) {
         let row = &mut self.guides[index * GuideAccount::LENGTH..];
@@ -360,6 +381,7 @@ impl Accounts {
                 torque: with(a.torque, b.torque),
                 force: pair(a.force, b.force),
                 damped: with(a.damped, b.damped),
+                forced: with(a.forced, b.forced),
             }),
             shafts: each(&self.shafts, &other.shafts, |a, b| ShaftAccount {
                 works: std::array::from_fn(|k| with(a.works[k], b.works[k])),
@@ -375,6 +397,7 @@ impl Accounts {
                     course: with(a.course, b.course),
                     push: with(a.push, b.push),
                     lost: with(a.lost, b.lost),
+                    forced: with(a.forced, b.forced),
                 }
             }),
         }

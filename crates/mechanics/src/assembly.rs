@@ -299,7 +299,7 @@ impl Drive {
         let (torques, moving) = free_trains::balance(&mut system, &trains, &q);
         let mut statics = Vec::new();
         if self.settle {
-            pushes_away::check(&laid.parts)?;
+            pushes_away::check(&laid.parts, self.begin)?;
             overload::check(&system, &laid.parts, (&q, &torques))?;
             free_trains::hold(&mut system, &moving, &q);
             let settled = newton::settle(&mut system, &mut q, &|| buried(&laid));

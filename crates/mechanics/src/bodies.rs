@@ -4,6 +4,7 @@ mod anchor;
 mod carried;
 mod contacts;
 mod equations;
+mod forces;
 mod group;
 mod inputs;
 mod shafts;
@@ -27,7 +28,7 @@ use crate::contact::Frame;
 use crate::kinematics::Kinematics;
 use crate::seam::Rates;
 use crate::tensioner::Slopes;
-use crate::{Coupling, Motion, ShaftLoss};
+use crate::{Coupling, Forces, Motion, ShaftLoss};
 
 /// Bodies that chains touch.
 #[derive(Clone, Debug)]
@@ -64,6 +65,8 @@ pub(crate) struct Wheel {
     /// Index of its shaft.
     pub(crate) shaft: usize,
     pub(crate) support: WheelSupport,
+    /// Forces on its centre from outside.
+    pub(crate) forces: Forces,
     /// Its own inertia \[kg m²\].
     pub(crate) inertia: f64,
     pub(crate) mass: f64,

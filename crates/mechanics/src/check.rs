@@ -115,6 +115,7 @@ fn sprocket_problems(sprocket: &Sprocket, tensioners: usize) -> Vec<DriveError> 
     );
     let gap = &sprocket.gap;
     found.extend(sprocket.loss.problems(&place));
+    found.extend(sprocket.forces.problems(&place));
     found.extend(sprocket.tolerance.problems(&place, gap.teeth, gap.pitch));
     let mut need = |ok: bool, what: &str, value: f64, allowed: &'static str| {
         found.extend(DriveError::require(ok, &format!("{place}.{what}"), value, allowed).err());

@@ -5,8 +5,8 @@ use chaindrive_geometry::{ArcSpline, Point, Side, ToothGap, Vector};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Chain, Coupling, Flank, Input, Motion, ShaftLoss, Surface, Tensioner, Tolerance, ToothStack,
-    Torque,
+    Chain, Coupling, Flank, Forces, Input, Motion, ShaftLoss, Surface, Tensioner, Tolerance,
+    ToothStack, Torque,
 };
 
 /// A toothed wheel.
@@ -24,6 +24,8 @@ pub struct Sprocket {
     pub shaft: usize,
     /// Support of its centre.
     pub support: Support,
+    /// Forces on its centre from outside.
+    pub forces: Forces,
     /// Moment of inertia about the centre \[kg m²\], beside that of its shaft; not negative.
     pub inertia: f64,
     /// Mass \[kg\]; positive when the centre is free to move.
@@ -429,6 +431,17 @@ impl Parts {
             || format!("shafts[{index}]"),
             |sprocket| format!("sprockets.{}", sprocket.name),
         )
+    }
+}
+
+impl Parts {
+    /// All bodies with the forces on them, each by its place in the scene: sprockets, then tensioners.
+    pub fn forces(&self) -> impl Iterator<Item = (String, &Forces)> {
+        let sprockets = self.sprockets.iter();
+        let sprockets = sprockets.map(|it| (format!("sprockets.{}", it.name), &it.forces));
+        let tensioners = self.tensioners.iter();
+        let tensioners = tensioners.map(|it| (format!("tensioners.{}", it.name), &it.forces));
+        sprockets.chain(tensioners)
     }
 }
 

@@ -77,6 +77,8 @@ pub enum Flow {
     BearingLoss,
     /// Loss by drag of oil and air on shafts.
     ShaftDragLoss,
+    /// Work of forces from outside on centres and carriers.
+    Forces,
 }
 
 /// Places where a drive loses energy.
@@ -179,7 +181,7 @@ impl Store {
 
 impl Flow {
     /// All flows, in the order of [`Energy::flows`].
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::LinkLoss,
         Self::DragLoss,
         Self::JointLoss,
@@ -200,6 +202,7 @@ impl Flow {
         Self::Load,
         Self::BearingLoss,
         Self::ShaftDragLoss,
+        Self::Forces,
     ];
 
     /// Whether the flow takes energy away.
@@ -221,7 +224,7 @@ impl Flow {
             Self::SupportLoss => Some(Place::Supports),
             Self::BearingLoss => Some(Place::Bearings),
             Self::ShaftDragLoss => Some(Place::Shafts),
-            Self::Driver | Self::Motions | Self::DriveTorque | Self::Load => None,
+            Self::Driver | Self::Motions | Self::DriveTorque | Self::Load | Self::Forces => None,
         }
     }
 
@@ -248,6 +251,7 @@ impl Flow {
             Self::Load => "load_supplied",
             Self::BearingLoss => "bearings_dissipated",
             Self::ShaftDragLoss => "shafts_dissipated",
+            Self::Forces => "forces_supplied",
         }
     }
 }

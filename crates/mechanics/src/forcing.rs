@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
+use crate::action::{Action, Argument};
 use crate::assembly::Assembled;
 use crate::drive::{GuideSupport, Layout, Rotation, Shaft, Stop, Support};
 use crate::order::Forcing;
-use crate::torque::Argument;
 use crate::{End, Ends, Motion, Torque};
 
 /// Orders of a table that are looked at, points by which, and share of the greatest amplitude below which one does not count. *Assumed*: cams that
@@ -56,26 +56,23 @@ impl Assembled {
             let wheel = &wheels[*wheel];
             turns(wheel.shaft, f64::from(wheel.teeth));
         }
-        for (shaft, it) in self.drive.shafts.iter().enumerate() {
-            for torque in it.torques() {
-                let shaft = torque.follows().unwrap_or(shaft);
-                match torque {
-                    Torque::Orders { terms, .. } => {
-                        for order in terms.iter().filter(|it| it.acts()) {
-                            turns(shaft, order.order);
-                        }
+        for (shaft, action) in self.actions() {
+            match action {
+                Action::Orders { terms, .. } => {
+                    for order in terms.iter().filter(|it| it.acts()) {
+                        turns(shaft, order.order);
                     }
-                    Torque::Table {
-                        over: Argument::Angle { turns: whole, .. },
-                        curve,
-                    } => {
-                        let whole = f64::from(*whole);
-                        for order in orders(|share| curve.polyline(TAU * whole * share)) {
-                            turns(shaft, f64::from(order) / whole);
-                        }
-                    }
-                    _ => {}
                 }
+                Action::Table {
+                    over: Argument::Angle { turns: whole, .. },
+                    curve,
+                } => {
+                    let whole = f64::from(*whole);
+                    for order in orders(|share| curve.polyline(TAU * whole * share)) {
+                        turns(shaft, f64::from(order) / whole);
+                    }
+                }
+                _ => {}
             }
         }
         for motion in self.motions() {
@@ -116,17 +113,42 @@ impl Assembled {
     /// In words, the first thing that acts as a function of time, such as a ramp: its times are those of the record, and a run-in without a
     /// set length would move it. None where all that acts repeats with the turns of a shaft, or stays.
     pub fn function_of_time(&self) -> Option<&'static str> {
-        let of_torque = |torque: &Torque| match torque {
-            Torque::Ramp { .. } => Some("a torque that is switched on at a time"),
-            Torque::Table {
+        let told = |action: &Action, words: [&'static str; 2]| match action {
+            Action::Ramp { .. } => Some(words[0]),
+            Action::Table {
                 over: Argument::Time,
                 ..
-            } => Some("a torque over time"),
+            } => Some(words[1]),
             _ => None,
         };
-        let mut torques = self.drive.shafts.iter().flat_map(Shaft::torques);
+        let torques = self.drive.shafts.iter().flat_map(Shaft::torques);
+        let mut torques = torques.filter_map(Torque::action);
+        let words = [
+            "a torque that is switched on at a time",
+            "a torque over time",
+        ];
         let motion = self.motions().find_map(of_time);
-        motion.or_else(|| torques.find_map(of_torque))
+        let torque = || torques.find_map(|it| told(it, words));
+        let words = ["a force that is switched on at a time", "a force over time"];
+        let mut forces = self.drive.forces().flat_map(|(_, forces)| forces.all());
+        let force = || forces.find_map(|it| told(it, words));
+        motion.or_else(torque).or_else(force)
+    }
+
+    /// All that follows time or an angle, torques before forces, each with the shaft whose angle counts: any where none does.
+    fn actions(&self) -> impl Iterator<Item = (usize, &Action)> {
+        let shafts = self.drive.shafts.iter().enumerate();
+        let torques = shafts.flat_map(|(shaft, it)| {
+            let actions = it.torques().filter_map(Torque::action);
+            actions.map(move |action| (shaft, action))
+        });
+        let sprockets = self.drive.sprockets.iter();
+        let centres =
+            sprockets.flat_map(|it| it.forces.all().map(move |action| (it.shaft, action)));
+        let carriers = self.drive.tensioners.iter();
+        let carriers = carriers.flat_map(|it| it.forces.all().map(|action| (0, action)));
+        let all = torques.chain(centres).chain(carriers);
+        all.map(|(shaft, action)| (action.follows().unwrap_or(shaft), action))
     }
 
     /// In words, why the motion of this drive need not come to repeat itself: a chain has ends, is driven by no motion, or by one that is a function of

@@ -3,7 +3,7 @@
 use crate::drive::{
     Adjust, GearPair, GuideSupport, Layout, Parts, PlacedChain, Shaft, Stop, Support,
 };
-use crate::{Coupling, Torque};
+use crate::{Action, Coupling, Torque};
 
 /// Sets that grow together: every entry points to one of its own set, in the end to the least.
 #[derive(Clone, Debug)]
@@ -87,6 +87,15 @@ pub(crate) fn groups(parts: &Parts) -> Vec<Group> {
             sets.join(shafts + index, shafts + followed);
         }
     }
+    let centres = parts.sprockets.iter().enumerate();
+    let centres = centres.map(|(index, body)| (sprockets + index, &body.forces));
+    let carriers = parts.tensioners.iter().enumerate();
+    let carriers = carriers.map(|(index, body)| (tensioners + index, &body.forces));
+    for (entry, forces) in centres.chain(carriers) {
+        for followed in forces.all().filter_map(Action::follows) {
+            sets.join(entry, shafts + followed);
+        }
+    }
     let couplings = parts.couplings.iter().map(|coupling| coupling.shafts);
     let gears = parts.gears.iter().map(|pair| pair.shafts);
     for [a, b] in couplings.chain(gears) {
@@ -165,6 +174,8 @@ impl Group {
             if let Support::Tensioner(i) = &mut sprocket.support {
                 *i = tensioner_at(*i);
             }
+            let forces = sprocket.forces.all_mut();
+            forces.for_each(|it| it.refer(shaft_at));
             sprocket
         });
         let guides = self.guides.iter().map(|&index| {
@@ -192,11 +203,15 @@ impl Group {
         for torque in shafts.iter_mut().flat_map(Shaft::torques_mut) {
             torque.refer(shaft_at);
         }
+        let mut tensioners = pick(&whole.tensioners, &self.tensioners);
+        for force in tensioners.iter_mut().flat_map(|it| it.forces.all_mut()) {
+            force.refer(shaft_at);
+        }
         Parts {
             chains: chains.collect(),
             sprockets: sprockets.collect(),
             guides: guides.collect(),
-            tensioners: pick(&whole.tensioners, &self.tensioners),
+            tensioners,
             shafts,
             couplings: couplings.collect(),
             gears: gears.collect(),
@@ -222,6 +237,7 @@ impl Group {
         }
         for (&index, tensioner) in self.tensioners.iter().zip(&laid.tensioners) {
             whole.tensioners[index].carrier = tensioner.carrier;
+            whole.tensioners[index].forced_at = tensioner.forced_at;
         }
     }
 }

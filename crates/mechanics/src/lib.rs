@@ -101,6 +101,7 @@
 //! ```
 
 mod accounts;
+mod action;
 mod alignment;
 mod applied;
 mod articulation;
@@ -119,6 +120,7 @@ mod energy;
 mod engagement;
 mod error;
 mod events;
+mod force;
 mod forcing;
 mod groups;
 #[doc(hidden)]
@@ -152,6 +154,7 @@ mod watch;
 pub use accounts::{
     Accounts, GuideAccount, ShaftAccount, Source, SprocketAccount, TensionerAccount,
 };
+pub use action::{Action, Argument};
 pub use alignment::Alignment;
 pub use articulation::{Articulation, LateralRub};
 pub use assembly::{Assembled, Fitting, FreeTrain, Gap, RollerLayout, Sag, Statics};
@@ -170,6 +173,7 @@ pub use drive::{
 pub use energy::{Energy, Flow, Place, Store};
 pub use engagement::engagement_wave;
 pub use error::{AssemblyError, Clash, DriveError, MemoryError, Pull};
+pub use force::Forces;
 pub use joints::{Clearance, FreeRoller};
 pub use kinematics::Kinematics;
 pub use modes::{Mode, Modes};
@@ -194,7 +198,7 @@ pub use tooth_stack::{
     Beam, BeamEnds, JointMasses, StackTerm, StrikingMass, ToothStack, dry_blow, rim_compliance,
     wall_compliance,
 };
-pub use torque::{Argument, Torque};
+pub use torque::Torque;
 pub use warming::warming;
 pub use watch::{DriveExtremes, Extremes, SprocketExtremes, WatchPlan};
 

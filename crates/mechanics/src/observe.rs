@@ -2,6 +2,7 @@
 
 mod ledger;
 mod names;
+mod supports;
 
 use chaindrive_geometry::Point;
 use chaindrive_integrate::{Moment, SecondOrderSystem};
@@ -115,6 +116,8 @@ impl System {
         set_lengths(&mut out.joint_force, &out.joint_force_x, &out.joint_force_y);
         set_lengths(&mut out.bush_force, &out.bush_force_x, &out.bush_force_y);
         self.observe_sprockets(at, record, out);
+        let accelerations = evaluates.then_some(&record.reading.a[..]);
+        self.observe_supports(at, accelerations, out);
         if sights.has(Sights::LAWS) {
             self.observe_contacts(record, out);
         }

@@ -8,6 +8,7 @@ mod backing;
 mod bodies;
 mod carried_bodies;
 mod chains;
+mod forces;
 mod places;
 mod plate;
 mod rotation;
@@ -27,7 +28,8 @@ use crate::{Assembled, AssemblyError, Clash, Drive, Flow, Gap, Observation};
 /// All of a drive that does not change while it moves.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    /// Sprockets, guides, tensioners, in this order, each kind in the order of the drive; an arm is followed by its plunger.
+    /// Sprockets, guides, tensioners, forces on sprockets, forces on tensioners, in this order, each kind in the order of the drive; an arm is followed
+    /// by its plunger.
     pub bodies: Vec<Body>,
     /// The chains.
     pub chains: Vec<FigureChain>,
@@ -97,6 +99,12 @@ pub enum BodyKind {
     },
     /// The plunger that pushes a carrier; its frame has the tip as origin and the push along x.
     Plunger,
+    /// The arrow of the forces of the scene on a sprocket or a tensioner, whose name it bears; its frame has the point on which they act as origin and
+    /// their sum along x. Its length says nothing.
+    Force {
+        /// Whether they act on the tensioner of that name.
+        on_carrier: bool,
+    },
 }
 
 impl BodyKind {
@@ -107,6 +115,8 @@ impl BodyKind {
             Self::Guide { .. } => "guide",
             Self::Carrier { name, .. } => name,
             Self::Plunger => "plunger",
+            Self::Force { on_carrier: false } => "force",
+            Self::Force { on_carrier: true } => "carrier-force",
         }
     }
 }

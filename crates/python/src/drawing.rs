@@ -57,7 +57,7 @@ impl Figure {
                     drawn.set_item("arrow", arrow.transpose()?)?;
                 }
                 BodyKind::Guide { touches } => drawn.set_item("touches", touches.name())?,
-                BodyKind::Carrier { .. } | BodyKind::Plunger => {}
+                BodyKind::Carrier { .. } | BodyKind::Plunger | BodyKind::Force { .. } => {}
             }
             bodies.append(drawn)?;
         }
@@ -108,7 +108,7 @@ impl Figure {
 
     /// Names of the channels by which everything is placed, where they were recorded.
     #[classattr]
-    fn placing() -> [&'static str; 10] {
+    fn placing() -> [&'static str; 14] {
         Instant::CHANNELS
     }
 

@@ -64,11 +64,14 @@ fn control(kind: &str, name: String) -> PyResult<Control> {
         "speed" => Control::Speed(name),
         "angle" => Control::Angle(name),
         "force" => Control::Force(name),
+        "force_x" => Control::ForceX(name),
+        "force_y" => Control::ForceY(name),
         "centre_x" => Control::CentreX(name),
         "centre_y" => Control::CentreY(name),
         "parameter" => Control::Parameter(name),
         _ => {
-            let known = "torque, speed, angle, force, centre_x, centre_y, parameter";
+            let known =
+                "torque, speed, angle, force, force_x, force_y, centre_x, centre_y, parameter";
             let message = format!("`{kind}` cannot be set; there are {known}");
             return Err(parameter(message, "kind", &format!("one of {known}")));
         }

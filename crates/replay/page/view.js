@@ -13,8 +13,9 @@ class View {
     this.marked = -1;
     this.shapes = film.bodies.map((body) => this.shape(body));
     // Sprockets cover the arms that carry them.
-    const isSprocket = (b) => Number(film.bodies[b].kind === 'sprocket');
-    this.backToFront = [...film.bodies.keys()].sort((a, b) => isSprocket(a) - isSprocket(b));
+    const layer = (b) => ['sprocket', 'force', 'carrier-force'].indexOf(film.bodies[b].kind) + 1;
+    const layers = [0, 1, 2, 2];
+    this.backToFront = [...film.bodies.keys()].sort((a, b) => layers[layer(a)] - layers[layer(b)]);
     this.bounds = this.boundsOfAll();
     this.tension = film.arrays.link_tension && scaleRange(film.arrays.link_tension);
     const force = film.arrays.contact_force;
@@ -238,10 +239,11 @@ class View {
     c.setTransform(cos, -sin, -sin, -cos, u * density, v * density);
     const sprocket = kind === 'sprocket';
     const face = kind === 'guide';
+    const force = kind.endsWith('force');
     c.lineJoin = 'round';
     c.fillStyle = sprocket ? colours.steel : colours.arm;
-    c.strokeStyle = sprocket ? colours['steel-line'] : face ? colours.guide : colours['arm-line'];
-    c.lineWidth = (face ? 2.6 : 1.1) / scale;
+    c.strokeStyle = sprocket ? colours['steel-line'] : face ? colours.guide : force ? colours.force : colours['arm-line'];
+    c.lineWidth = (face || force ? 2.6 : 1.1) / scale;
     for (const { path, closed } of lines) {
       if (closed) c.fill(path);
       // The material behind a face is for the eye; the face is what the chain meets.

@@ -81,13 +81,17 @@ pub enum AnimationError {
 impl Selection {
     /// Whether a film of this selection reads a channel.
     pub fn wants(&self, channel: &str) -> bool {
-        const SHOWN: [&str; 8] = [
+        const SHOWN: [&str; 12] = [
             "roller_x",
             "roller_y",
             "sprocket_angle",
             "sprocket_x",
             "sprocket_y",
             "tensioner_position",
+            "centre_force_x",
+            "centre_force_y",
+            "carrier_force_x",
+            "carrier_force_y",
             "link_tension",
             "contact_force",
         ];

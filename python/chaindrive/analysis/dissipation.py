@@ -13,7 +13,13 @@ from chaindrive.errors import ParameterError
 
 __all__ = ["losses"]
 
-_OUTSIDE = ("driver_supplied", "motions_supplied", "torques_supplied", "load_supplied")
+_OUTSIDE = (
+    "driver_supplied",
+    "motions_supplied",
+    "torques_supplied",
+    "load_supplied",
+    "forces_supplied",
+)
 # Those of the core: `Ledger::unknown` of the summary.
 _TAKEN, _TO_AND_FRO = 1e-6, 0.1
 

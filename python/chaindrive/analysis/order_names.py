@@ -112,28 +112,34 @@ def _acting(known: Mapping[str, SprocketParts]) -> Iterator[tuple[str, str, floa
         for term in motion.get("terms", ()) if motion.get("kind") == "orders" else ():
             order = float(term["order"])
             yield f"motion of {name}, order {order:g}", str(motion.get("of") or name), order
-        for torque in (*_listed(it.scene.get("drive")), *_listed(it.scene.get("load"))):
-            of = str(torque.get("of") or name)
-            for order in _orders(torque):
-                yield f"torque on {name}, order {order:g}", of, order
+        for key, what in _ACTIONS.items():
+            for action in _listed(it.scene.get(key)):
+                of = str(action.get("of") or name)
+                for order in _orders(action):
+                    yield f"{what} on {name}, order {order:g}", of, order
 
 
-def _listed(torques: Any) -> list[Mapping[str, Any]]:
-    if torques is None:
+#: Lists of torques and forces on a sprocket, by their keys.
+_ACTIONS = {"drive": "torque", "load": "torque", "force_x": "force", "force_y": "force"}
+
+
+def _listed(actions: Any) -> list[Mapping[str, Any]]:
+    if actions is None:
         return []
-    return [torques] if isinstance(torques, Mapping) else list(torques)
+    return [actions] if isinstance(actions, Mapping) else list(actions)
 
 
-def _orders(torque: Mapping[str, Any]) -> list[float]:
-    """Orders of a torque: as it says, or the strongest of its table."""
-    kind = torque.get("kind")
+def _orders(action: Mapping[str, Any]) -> list[float]:
+    """Orders of a torque or a force: as it says, or the strongest of its table."""
+    kind = action.get("kind")
     if kind == "harmonic":
-        return [float(torque["order"])]
+        return [float(action["order"])]
     if kind == "orders":
-        return [float(term["order"]) for term in torque["terms"]]
+        return [float(term["order"]) for term in action["terms"]]
     if kind != "angle-table":
         return []
-    angles, values = np.asarray(torque["angles"]), np.asarray(torque["torques"])
+    angles = np.asarray(action["angles"])
+    values = np.asarray(action["torques"] if "torques" in action else action["forces"])
     even = np.linspace(0.0, angles[-1], 720, endpoint=False)
     amplitude = np.abs(np.fft.rfft(np.interp(even, angles, values)))
     amplitude[0] = 0.0

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from chaindrive.drive import Drive
 from chaindrive.plot.axes import colour_bar, drawing
 from chaindrive.plot.docstrings import completed
-from chaindrive.plot.scheme import CARRIER, GUIDE, INK, MARK, OUTLINE, PLATES, STEEL
+from chaindrive.plot.scheme import CARRIER, FORCE, GUIDE, INK, MARK, OUTLINE, PLATES, STEEL
 from chaindrive.plot.units import in_trade, written
 from chaindrive.pose import Pose, drive_of, figure_of, recorded_at
 
@@ -188,6 +188,9 @@ class _Picture:
             face: dict[str, Any] = {"facecolor": GUIDE, "edgecolor": "none", "alpha": 0.45}
             self.ax.add_patch(Polygon(backing, zorder=1.5, **face))
             self.ax.plot(*outlines[0].T, color=GUIDE, linewidth=1.0, zorder=3)
+        elif body["kind"] in ("force", "carrier-force"):
+            for outline in outlines:
+                self.ax.plot(*outline.T, color=FORCE, linewidth=1.6, zorder=6, label="_force")
         else:
             wide = 1.5 if body["kind"] == "plunger" else 3.0
             look: dict[str, Any] = {"color": CARRIER, "linewidth": wide, "solid_capstyle": "round"}

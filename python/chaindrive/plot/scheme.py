@@ -14,6 +14,7 @@ from typing import Any
 __all__ = [
     "CARRIER",
     "CURVES",
+    "FORCE",
     "GUIDE",
     "INK",
     "LIMIT",
@@ -50,6 +51,8 @@ CURVES = (
 """Curves, in this order."""
 PLATES = CURVES[0]
 """Link plates without a tension."""
+FORCE = CURVES[5]
+"""Arrows of forces on centres and carriers."""
 LIMIT = INK
 """Lines of limits and references."""
 

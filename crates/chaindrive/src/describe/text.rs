@@ -26,6 +26,7 @@ impl fmt::Display for Description {
         }
         all(&mut sheet, "oil", &self.oil)?;
         all(&mut sheet, "turned by torques", &self.free_trains)?;
+        all(&mut sheet, "forces from outside", &self.forces)?;
         self.statics(&mut sheet)?;
         self.model.tell(&mut sheet)?;
         self.time_scales(&mut sheet)?;

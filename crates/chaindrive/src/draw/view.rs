@@ -221,7 +221,7 @@ fn name_of(
             })
         }
         BodyKind::Guide { .. } => Some(name_of_guide(body, placement, letter)),
-        BodyKind::Carrier { .. } | BodyKind::Plunger => None,
+        BodyKind::Carrier { .. } | BodyKind::Plunger | BodyKind::Force { .. } => None,
     }
 }
 

@@ -22,6 +22,7 @@ impl PageContent<'_> {
         }
         section.sentences.extend(self.waves());
         section.sentences.extend(self.balance());
+        section.sentences.extend(self.forces());
         section.sentences.push(self.efficiency());
         section.sentences.extend(self.warmth());
         section
@@ -52,6 +53,23 @@ impl PageContent<'_> {
             told(balance.lost()),
             told(kept.abs())
         ))
+    }
+
+    /// Power of forces from outside by the bodies that they move; none where nothing of the kind works.
+    fn forces(&self) -> Option<String> {
+        let sprockets = self.bodies.sprockets.iter();
+        let sprockets = sprockets.map(|it| (&it.name, it.forced));
+        let tensioners = self.bodies.tensioners.iter();
+        let all = sprockets.chain(tensioners.map(|it| (&it.name, it.forced)));
+        let working = all.filter(|(_, power)| *power != 0.0);
+        let told = working.map(|(name, power)| format!("{name} {}", Measure::Power.told(power)));
+        let told: Vec<String> = told.collect();
+        (!told.is_empty()).then(|| {
+            format!(
+                "Forces from outside put in, in the mean: {}.",
+                told.join(", ")
+            )
+        })
     }
 
     /// The efficiency, or the reason why there is none.

@@ -25,6 +25,11 @@ pub enum Control {
     Angle(String),
     /// Force on a tensioner \[N, or N m on an arm\] towards positive coordinates, beside its push.
     Force(String),
+    /// Force on the centre of a sprocket along x \[N\], by the name of the sprocket, beside those of the scene; or on a carrier where those of the
+    /// scene act, by its place `tensioners.NAME`.
+    ForceX(String),
+    /// The same along y.
+    ForceY(String),
     /// Acceleration of the centre of a sprocket along x \[m/s²\]: the centre goes on from where it is.
     CentreX(String),
     /// The same along y.
@@ -247,6 +252,9 @@ impl Moving {
     }
 }
 
+/// What stands before the name of a tensioner where a sprocket may be meant as well.
+const CARRIERS: &str = "tensioners.";
+
 impl Control {
     /// The input of the drive.
     fn input(&self, assembled: &Assembled) -> Result<Input, SimulationError> {
@@ -257,6 +265,13 @@ impl Control {
             let sprocket = system.sprocket_named(name)?;
             Some(Input::Centre { sprocket, axis })
         };
+        let force = |axis| match name.strip_prefix(CARRIERS) {
+            Some(carrier) => (system.tensioner_named(carrier))
+                .map(|tensioner| Input::CarrierForce { tensioner, axis }),
+            None => {
+                (system.sprocket_named(name)).map(|sprocket| Input::CentreForce { sprocket, axis })
+            }
+        };
         let mut tunable = assembled.drive.parts().tunable.iter();
         let input = match self {
             Self::Force(_) => {
@@ -265,6 +280,8 @@ impl Control {
             Self::Torque(_) => shaft().map(|shaft| Input::Torque { shaft }),
             Self::Speed(_) => shaft().map(|shaft| Input::Speed { shaft }),
             Self::Angle(_) => shaft().map(|shaft| Input::Angle { shaft }),
+            Self::ForceX(_) => force(0),
+            Self::ForceY(_) => force(1),
             Self::CentreX(_) => centre(0),
             Self::CentreY(_) => centre(1),
             Self::Parameter(_) => tunable.find(|it| it.place == name).map(|it| it.input),
@@ -285,6 +302,15 @@ impl Control {
             Self::Torque(_) | Self::Speed(_) | Self::Angle(_) => {
                 [system.sprocket_names(), system.shaft_names()].concat()
             }
+            Self::ForceX(_) | Self::ForceY(_) => {
+                let carriers = system.tensioner_names().into_iter();
+                let carriers = carriers.map(|name| format!("{CARRIERS}{name}"));
+                system
+                    .sprocket_names()
+                    .into_iter()
+                    .chain(carriers)
+                    .collect()
+            }
             Self::CentreX(_) | Self::CentreY(_) => system.sprocket_names(),
             Self::Parameter(_) => tunable.map(|it| it.place.clone()).collect(),
         };
@@ -299,6 +325,7 @@ impl Control {
     fn target(&self) -> (&'static str, &str) {
         match self {
             Self::Force(name) => ("tensioner", name),
+            Self::ForceX(name) | Self::ForceY(name) => ("centre or carrier", name),
             Self::Torque(name) | Self::Speed(name) | Self::Angle(name) => ("shaft", name),
             Self::CentreX(name) | Self::CentreY(name) => ("sprocket", name),
             Self::Parameter(place) => ("parameter", place),

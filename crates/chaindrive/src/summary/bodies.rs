@@ -42,6 +42,8 @@ pub struct SprocketStatistics {
     pub torque: f64,
     /// Mean power that the chain gives it \[W\]: work over time.
     pub power: f64,
+    /// Mean power of forces from outside on its centre \[W\]: work over time.
+    pub forced: f64,
     /// Force of the chain, which its bearings bear.
     pub force: ForceRecord,
     /// Extremes of the force of one roller on its teeth \[N\].
@@ -95,6 +97,8 @@ pub struct TensionerStatistics {
     pub travel: Extremes,
     /// Mean push \[N, or N m of an arm without a plunger\].
     pub push: f64,
+    /// Mean power of forces from outside on it, beside those on the centres that it carries \[W\].
+    pub forced: f64,
 }
 
 /// Loads of the bodies that chains touch.
@@ -177,6 +181,7 @@ impl BodyNames {
                 speed: accounts.shafts[it.shaft].angle / time,
                 torque: own.torque / time,
                 power: own.work / time,
+                forced: own.forced / time,
                 force: record(
                     own.force.map(|impulse| impulse / time),
                     |all, index| &all.sprockets[index].force,
@@ -201,6 +206,7 @@ impl BodyNames {
                 mean: own.course / time,
                 travel: extremes.tensioners[index],
                 push: own.push / time,
+                forced: own.forced / time,
             }
         };
         Bodies {

@@ -16,6 +16,7 @@ mod ends_of_numbers;
 mod energy;
 mod examples;
 mod film;
+mod forces;
 mod horizons;
 mod housing;
 mod impacts;

@@ -210,8 +210,11 @@ mod tests {
     use crate::{Export, Model};
 
     fn unit() -> Instance {
-        let scene = Scene::preset("marine_two_sprockets").unwrap();
-        let request = Request::new(&scene, &Settings::default()).unwrap();
+        unit_of(&Scene::preset("marine_two_sprockets").unwrap())
+    }
+
+    fn unit_of(scene: &Scene) -> Instance {
+        let request = Request::new(scene, &Settings::default()).unwrap();
         let model = Model::new(Export::new(&request, "drive")).unwrap();
         let mut unit = Instance::new(Arc::new(model));
         unit.enter_initialization(0.0).unwrap();
@@ -269,6 +272,50 @@ mod tests {
         let fault = unit.step_until(0.0, 1e5, &|| true).unwrap_err();
         assert!(fault.0.contains("given up"), "{fault}");
         unit.step(0.0, 1e-4).unwrap();
+    }
+
+    /// W = F Δx of a centre on springs, and of a point of an arm.
+    #[test]
+    fn forces_on_centres_and_carriers_are_inputs() {
+        let scene = Scene::preset("marine_two_sprockets").unwrap();
+        let springs = "{ kind = \"springs\", stiffness = [1e8, 1e8], damping = [0, 0] }";
+        let sprung = scene
+            .replace("sprockets.camshaft.support", springs)
+            .unwrap();
+        let sprung = sprung.replace("sprockets.camshaft.mass", "500").unwrap();
+        let mut unit = unit_of(&sprung);
+        let [force, place, work] = [
+            "set_force_x[camshaft]",
+            "sprocket_x[camshaft]",
+            "coupling_energy",
+        ]
+        .map(|name| reference(&unit, name));
+        let begin = unit.real(place).unwrap();
+        unit.set_real(force, 1e4).unwrap();
+        for step in 0..3 {
+            unit.step(f64::from(step) * 1e-4, 1e-4).unwrap();
+        }
+        let way = unit.real(place).unwrap() - begin;
+        let found = unit.real(work).unwrap();
+        assert!(way > 0.0 && (found / (1e4 * way) - 1.0).abs() < 1e-9);
+        // The carrier says where: only then has it the inputs.
+        let scene = Scene::preset("timing_drive").unwrap();
+        let name = "set_force_y[tensioners.arm]";
+        assert!(unit_of(&scene).model().reference(name).is_none());
+        let scene = scene
+            .replace("tensioners.arm.force_at", "[0.1, 0.1]")
+            .unwrap();
+        let mut unit = unit_of(&scene);
+        let [force, work] = [name, "coupling_energy"].map(|name| reference(&unit, name));
+        unit.set_real(force, 100.0).unwrap();
+        unit.step(0.0, 1e-4).unwrap();
+        let flows = unit.readings(Channel::EnergyFlows);
+        let flow = flows[Flow::Forces as usize];
+        let found = unit.real(work).unwrap();
+        assert!(
+            flow != 0.0 && (found / flow - 1.0).abs() < 1e-3,
+            "{found} {flow}"
+        );
     }
 
     /// Defect: after the first step the work was zero, for ½ J ω² of a shaft that a held torque had turned.

@@ -16,7 +16,7 @@ use crate::bodies::{Bodies, Shaft};
 use crate::course::Path;
 use crate::drive::{Layout, Parts, Rotation, StartSpeed};
 use crate::system::System;
-use crate::{AssemblyError, Course, Torque};
+use crate::{Action, AssemblyError, Course, Torque};
 
 /// Shafts that chains, gears and couplings join and no motion turns.
 #[derive(Clone, Debug, PartialEq)]
@@ -157,7 +157,7 @@ impl FreeTrain {
             turning.rate = c * self.speed;
             let given =
                 bodies.torque(&shaft.drive, turning, at) + bodies.torque(&shaft.load, turning, at);
-            given + bodies.idle_torque(*index, turning.rate)
+            given + bodies.idle_torque(*index, at.t, turning.rate)
         };
         self.shafts.iter().map(torque).collect()
     }
@@ -209,9 +209,8 @@ pub(super) fn balance(
                 continue;
             }
             shaft.drive.clear();
-            shaft.load = vec![Torque::Constant {
-                torque: torque - share,
-            }];
+            let value = torque - share;
+            shaft.load = vec![Action::Constant { value }.into()];
         }
     }
     (before, moving)
@@ -297,7 +296,7 @@ fn working_point(bodies: &Bodies, shafts: &[(usize, f64)], t: f64) -> Option<f64
     let sum = |speed: f64| {
         let given = torques().map(|(torque, c)| c * torque.mean(t, c * speed));
         let lost = shafts.iter();
-        let lost = lost.map(|(index, c)| c * bodies.idle_torque(*index, c * speed));
+        let lost = lost.map(|(index, c)| c * bodies.idle_torque(*index, t, c * speed));
         given.sum::<f64>() + lost.sum::<f64>()
     };
     let at_rest = sum(0.0);

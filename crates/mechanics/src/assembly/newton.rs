@@ -1,7 +1,7 @@
 //! Static equilibrium by Newton's method.
 //!
 //! ```text
-//! ∇E(u) = 0,   E = Σ ½ k (ℓ − p)² + Σ U(δ) − Σ m g·x − Σ M θ + E_tensioners + E_bearings
+//! ∇E(u) = 0,   E = Σ ½ k (ℓ − p)² + Σ U(δ) − Σ m g·x − Σ M θ − Σ F·x + E_tensioners + E_bearings
 //! ```
 //!
 //! u holds the free rollers, sprocket angles and centres, and tensioners. The Hessian is exact,
@@ -179,7 +179,8 @@ fn rounding(member: &Member, q: &[f64]) -> f64 {
 fn has_load(system: &System) -> bool {
     let mut shafts = system.bodies.shafts.iter();
     let torque = shafts.any(|shaft| !(shaft.drive.is_empty() && shaft.load.is_empty()));
-    torque || system.chains.iter().any(|member| member.chain.is_pulled())
+    let mut chains = system.chains.iter();
+    torque || chains.any(|member| member.chain.is_pulled()) || system.bodies.are_forced()
 }
 
 /// Which entries of the state are unknown, and where they stand in the linear system.

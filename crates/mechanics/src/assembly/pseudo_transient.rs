@@ -99,6 +99,7 @@ fn tighten(
         shaft.drive.clear();
         shaft.load.clear();
     }
+    bare.bodies.free_of_forces();
     // Too long and too short, with what is missing of the tension there.
     let mut bracket: [Option<(f64, f64)>; 2] = [None, None];
     let (mut stretch, mut stride) = (0.0, -pretension / stiffness);

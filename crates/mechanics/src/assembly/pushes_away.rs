@@ -1,14 +1,14 @@
 //! Tensioners that push what they carry away from the chain: no equilibrium is to be had, whatever the pretension.
 //!
 //! ```text
-//! Q = F ∂x/∂s + Σ m g·∂x/∂s,   Q dL/ds < 0        L: length of the taut route, s: coordinate of the tensioner
+//! Q = F ∂x/∂s + Σ m g·∂x/∂s + Σ F·∂x/∂s,   Q dL/ds < 0        L: length of the taut route, s: coordinate of the tensioner
 //! ```
 
-use chaindrive_geometry::{Rearranged, Route};
+use chaindrive_geometry::{Point, Rearranged, Route, Vector};
 
 use super::rearranging::{RouteOf, told};
 use super::wheels::{shifted, wheels};
-use crate::drive::{Adjust, Layout, Parts, Support};
+use crate::drive::{Adjust, Layout, Parts, Sprocket, Support};
 use crate::tensioner::Weight;
 use crate::{AssemblyError, Push};
 
@@ -22,11 +22,11 @@ const ABOUT: f64 = 0.1;
 const STEP: f64 = 1e-3;
 
 /// Refuses the first tensioner that pushes away from every chain that passes what it carries.
-pub(super) fn check(parts: &Parts) -> Result<(), AssemblyError> {
+pub(super) fn check(parts: &Parts, begin: f64) -> Result<(), AssemblyError> {
     for tensioner in 0..parts.tensioners.len() {
         let routes = (0..parts.chains.len()).filter_map(|chain| RouteOf::chain(parts, chain));
         let routes: Vec<RouteOf<'_>> = routes.collect();
-        let force = force(parts, tensioner);
+        let force = force(parts, begin, tensioner);
         // Between two chains a push leaves one of them.
         if routes
             .iter()
@@ -35,7 +35,7 @@ pub(super) fn check(parts: &Parts) -> Result<(), AssemblyError> {
             continue;
         }
         for route in routes {
-            if let Some(error) = away(&route, tensioner) {
+            if let Some(error) = away(&route, force, tensioner) {
                 let name = parts.chains[route.chain].name.as_ref();
                 return Err(error.of_chains(std::iter::once(name)));
             }
@@ -44,10 +44,9 @@ pub(super) fn check(parts: &Parts) -> Result<(), AssemblyError> {
     Ok(())
 }
 
-fn away(route: &RouteOf<'_>, tensioner: usize) -> Option<AssemblyError> {
+fn away(route: &RouteOf<'_>, force: f64, tensioner: usize) -> Option<AssemblyError> {
     let parts = route.parts;
     let carried = route.carried_by(tensioner);
-    let force = force(parts, tensioner);
     let loosens = loosening(route, tensioner, force)?;
     let own = &parts.tensioners[tensioner];
     // A spring that is spent before the chain is slack only adjusts it.
@@ -95,8 +94,8 @@ fn away(route: &RouteOf<'_>, tensioner: usize) -> Option<AssemblyError> {
     })
 }
 
-/// Generalised force of push and weight on a tensioner \[N or N m\].
-fn force(parts: &Parts, tensioner: usize) -> f64 {
+/// Generalised force of push, weight and forces from outside on a tensioner where the drive is assembled \[N or N m\].
+fn force(parts: &Parts, begin: f64, tensioner: usize) -> f64 {
     let own = &parts.tensioners[tensioner];
     let push = own.push.relaxed();
     let pushed = push
@@ -106,8 +105,20 @@ fn force(parts: &Parts, tensioner: usize) -> f64 {
         .sprockets
         .iter()
         .filter(|it| it.support == Support::Tensioner(tensioner));
-    let carried: Vec<Weight> = carried.map(|it| (it.mass, it.centre)).collect();
-    pushed * own.carrier.extension(0.0).lever + own.carrier.weight(0.0, &carried, parts.gravity)
+    let carried: Vec<&Sprocket> = carried.collect();
+    let weights: Vec<Weight> = carried.iter().map(|it| (it.mass, it.centre)).collect();
+    let centres = carried.iter().map(|it| (&it.forces, it.centre));
+    let own_point = own.forced_at.unwrap_or_else(Point::origin);
+    let forced = centres.chain([(&own.forces, own_point)]);
+    // Q = F·∂x/∂s
+    let along = forced.filter(|(forces, _)| !forces.is_empty());
+    let along = along.map(|(forces, at)| {
+        Vector::from(forces.unturned(begin)).dot(&own.carrier.carry(0.0, at).1)
+    });
+    let along: f64 = along.sum();
+    let own_force = pushed * own.carrier.extension(0.0).lever
+        + own.carrier.weight(0.0, &weights, parts.gravity);
+    own_force + along
 }
 
 /// Links \[–\] that the route becomes shorter by for every unit of the coordinate, where the push does that; none where it does not, or there is none.

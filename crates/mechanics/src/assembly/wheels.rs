@@ -137,7 +137,9 @@ pub(super) fn shifted(parts: &Parts, adjust: &Adjust, travel: f64) -> Result<Par
                     guide.face = carrier.carry_face(travel, &guide.face)?;
                 }
             }
-            parts.tensioners[*tensioner].carrier = carrier.assembled_at(travel);
+            let own = &mut parts.tensioners[*tensioner];
+            own.carrier = carrier.assembled_at(travel);
+            own.forced_at = own.forced_at.map(|at| carrier.carry(travel, at).0);
         }
     }
     Ok(parts)
@@ -183,6 +185,7 @@ pub(super) fn grown(parts: &Parts, growth: f64) -> Result<Parts, AssemblyError> 
     }
     for (tensioner, by) in parts.tensioners.iter_mut().zip(carriers) {
         tensioner.carrier = tensioner.carrier.translated(by);
+        tensioner.forced_at = tensioner.forced_at.map(|at| at + by);
     }
     Ok(parts)
 }

@@ -3,6 +3,7 @@
 use chaindrive_geometry::Vector;
 use chaindrive_integrate::{Moment, Prediction};
 
+use super::forces::with_force;
 use super::slide::Pose;
 use super::{Bodies, RailSupport, TurnedBy, Wheel, WheelSupport};
 use crate::accounts::{AccountRates, Source};
@@ -35,15 +36,22 @@ impl Bodies {
             self.balance_shafts(a, accounts);
         }
         for (index, (wheel, wrench)) in self.wheels.iter().zip(wheel_wrenches).enumerate() {
+            let given = self.centre_force(index, at);
+            let force = with_force(wrench.force, given);
             let centre = || wheel.centre_kinematics(at.t, at.q, at.v, &self.slides);
             match &wheel.support {
                 WheelSupport::Fixed => {}
                 WheelSupport::Prescribed { .. } => {
                     let (_, velocity, acceleration) = centre();
                     // P = (m a − F − m g)·v
-                    let force = Vector::new(wrench.force[0], wrench.force[1]);
+                    let force = Vector::from(force);
                     let needed = (acceleration - self.gravity) * wheel.mass - force;
                     rates[Flow::Motions as usize] += needed.dot(&velocity);
+                    if let Some(given) = given {
+                        let power = Vector::from(given).dot(&velocity);
+                        rates[Flow::Forces as usize] += power;
+                        accounts.force_centre(index, power);
+                    }
                 }
                 WheelSupport::Springs {
                     dof,
@@ -55,12 +63,16 @@ impl Bodies {
                         let away = centre[axis] - wheel.centre[axis];
                         let speed = velocity[axis];
                         // m a = F + m g − k x − c ẋ
-                        let force =
-                            wrench.force[axis] - stiffness[axis] * away - damping[axis] * speed;
+                        let force = force[axis] - stiffness[axis] * away - damping[axis] * speed;
                         a[dof + axis] = force / wheel.mass + self.gravity[axis];
                         let lost = damping[axis] * speed * speed;
                         rates[Flow::SupportLoss as usize] += lost;
                         accounts.damp(index, lost);
+                    }
+                    if let Some(given) = given {
+                        let power = Vector::from(given).dot(&velocity);
+                        rates[Flow::Forces as usize] += power;
+                        accounts.force_centre(index, power);
                     }
                 }
                 WheelSupport::Carried(index) => {
@@ -93,12 +105,25 @@ impl Bodies {
                 }
             }
         }
+        self.move_slides(at, prediction, a, (rates, accounts), (flows, pushes));
+    }
+
+    /// Accelerations of the tensioners; what else acts on their coordinates stands there.
+    fn move_slides(
+        &self,
+        at: Moment<'_>,
+        prediction: Option<Prediction<'_>>,
+        a: &mut [f64],
+        (rates, accounts): (&mut [f64], &mut AccountRates<'_>),
+        (flows, pushes): (&mut [f64], &mut [Slopes]),
+    ) {
         for (i, slide) in self.slides.iter().enumerate() {
             let Some(dof) = slide.dof else { continue };
             let mut pose = slide.pose(at.q, at.v);
             let mut state = slide.state(at.z);
             let input = self.inputs.force(i, at.t);
-            let given = a[dof] + input + slide.weight(pose, self.gravity);
+            let mut given = a[dof] + input + slide.weight(pose, self.gravity);
+            self.each_force_on(i, pose, at, |force| given += force.along);
             let reduced = slide.reduced(pose);
             // I s̈ = Σ Q − ½ I′ ṡ²
             let accelerate = |pose: Pose, state: f64| {
@@ -123,6 +148,14 @@ impl Bodies {
             rates[Flow::TensionerLoss as usize] += lost;
             accounts.of_tensioner(i, [pose.coordinate, push.elastic + push.damping, lost]);
             rates[Flow::DriveTorque as usize] += input * pose.rate;
+            self.each_force_on(i, pose, at, |force| {
+                let power = force.along * pose.rate;
+                rates[Flow::Forces as usize] += power;
+                match force.centre {
+                    Some(wheel) => accounts.force_centre(wheel, power),
+                    None => accounts.force_carrier(i, power),
+                }
+            });
         }
     }
 
@@ -226,7 +259,7 @@ impl Bodies {
     /// Losses of the shafts, at their sprockets and elsewhere; their damping is written down.
     ///
     /// ```text
-    /// F = |F_chain + m g|      P = −T ω
+    /// F = |F_chain + F_outside + m g|      P = −T ω
     /// ```
     fn resist(
         &self,
@@ -236,12 +269,16 @@ impl Bodies {
         wheel_wrenches: &[Wrench],
         resisting: &mut [f64],
     ) {
-        let weighed = |(wheel, wrench): (&Wheel, &Wrench)| {
+        let weighed = |(index, (wheel, wrench)): (usize, (&Wheel, &Wrench))| {
             let weight = self.gravity * wheel.mass;
-            (wrench.force[0] + weight.x).hypot(wrench.force[1] + weight.y)
+            let force = with_force(wrench.force, self.centre_force(index, at));
+            (force[0] + weight.x).hypot(force[1] + weight.y)
         };
-        let wheels = self.wheels.iter().zip(wheel_wrenches);
-        let at_wheels = wheels.map(|it| (it.0.shaft, &it.0.turn, &it.0.loss, Some(it)));
+        let wheels = self.wheels.iter().zip(wheel_wrenches).enumerate();
+        let at_wheels = wheels.map(|it| {
+            let (_, (wheel, _)) = it;
+            (wheel.shaft, &wheel.turn, &wheel.loss, Some(it))
+        });
         let shafts = self.shafts.iter().enumerate();
         let elsewhere = shafts.map(|(index, it)| (index, &it.turn, &it.loss, None));
         for ((shaft, turn, loss, carries), damping) in at_wheels.chain(elsewhere).zip(resisting) {

@@ -38,6 +38,20 @@ pub enum Input {
         /// Axis.
         axis: usize,
     },
+    /// Force on the centre of a sprocket along x (0) or y (1) \[N\], beside those of the scene.
+    CentreForce {
+        /// Index of the sprocket.
+        sprocket: usize,
+        /// Axis.
+        axis: usize,
+    },
+    /// Force on a carrier along x (0) or y (1) \[N\], where those of the scene act, beside them.
+    CarrierForce {
+        /// Index of the tensioner.
+        tensioner: usize,
+        /// Axis.
+        axis: usize,
+    },
     /// Factor on the loads of a shaft \[–\], 1 at the start.
     Load {
         /// Index of the shaft.
@@ -60,6 +74,9 @@ pub enum Input {
 pub(crate) struct Inputs {
     torques: Vec<Ramp>,
     forces: Vec<Ramp>,
+    /// Along x, then y of every body.
+    centre_forces: Vec<Ramp>,
+    carrier_forces: Vec<Ramp>,
     /// Parameters that are no more those of the scene.
     pub(crate) tuned: Vec<(Input, f64)>,
     /// Changes to come, the earliest first: of equal times in the order of their planning.
@@ -108,6 +125,26 @@ impl Inputs {
         self.forces.get(tensioner).map_or(0.0, |ramp| ramp.at(t))
     }
 
+    /// Force on the centre of a sprocket \[N\]; none before one was set.
+    pub(crate) fn centre_force(&self, sprocket: usize, t: f64) -> Option<[f64; 2]> {
+        pair(&self.centre_forces, sprocket, t)
+    }
+
+    /// Force on a carrier \[N\]; none before one was set.
+    pub(crate) fn carrier_force(&self, tensioner: usize, t: f64) -> Option<[f64; 2]> {
+        pair(&self.carrier_forces, tensioner, t)
+    }
+
+    /// Sets a force on a centre along an axis on its course.
+    pub(crate) fn set_centre_force(&mut self, sprocket: usize, axis: usize, t: f64, to: Course) {
+        set(&mut self.centre_forces, 2 * sprocket + axis, t, to);
+    }
+
+    /// Sets a force on a carrier along an axis on its course.
+    pub(crate) fn set_carrier_force(&mut self, tensioner: usize, axis: usize, t: f64, to: Course) {
+        set(&mut self.carrier_forces, 2 * tensioner + axis, t, to);
+    }
+
     /// Sets a torque on its course.
     pub(crate) fn set_torque(&mut self, shaft: usize, t: f64, course: Course) {
         set(&mut self.torques, shaft, t, course);
@@ -128,10 +165,18 @@ impl Inputs {
     pub(crate) fn next_change(&self, t: f64) -> Option<f64> {
         let mut times = self.planned.iter().map(|(time, ..)| *time);
         let planned = times.find(|time| *time > t);
-        let ramps = self.torques.iter().chain(&self.forces);
+        let points = self.centre_forces.iter().chain(&self.carrier_forces);
+        let ramps = self.torques.iter().chain(&self.forces).chain(points);
         let ends = ramps.filter_map(|ramp| ramp.next_knot(t));
         ends.chain(planned).reduce(f64::min)
     }
+}
+
+/// Values along both axes; none before any ramp of the list was set.
+fn pair(ramps: &[Ramp], index: usize, t: f64) -> Option<[f64; 2]> {
+    let along = |axis: usize| ramps.get(2 * index + axis).map(|ramp| ramp.at(t));
+    let x = along(0)?;
+    Some([x, along(1).unwrap_or(0.0)])
 }
 
 fn set(ramps: &mut Vec<Ramp>, index: usize, t: f64, course: Course) {

@@ -1,8 +1,9 @@
 //! Shafts, compiled: what turns, and what turns with it.
 
+use chaindrive_geometry::Vector;
 use chaindrive_integrate::Moment;
 
-use super::{Bodies, WheelSupport};
+use super::{Bodies, Wheel, WheelSupport};
 use crate::course::Path;
 use crate::kinematics::Kinematics;
 use crate::{Coupling, Motion, ShaftLoss, Torque};
@@ -216,10 +217,17 @@ impl Bodies {
         wheels.chain(self.shafts.iter().map(|shaft| &shaft.turn))
     }
 
-    /// Torque of all losses of a shaft at a speed \[N m\], under the weight of its sprockets: no chain pulls.
-    pub(crate) fn idle_torque(&self, shaft: usize, speed: f64) -> f64 {
+    /// Torque of all losses of a shaft at a time and a speed \[N m\], under the weight of its sprockets and the mean force on them: no chain pulls.
+    pub(crate) fn idle_torque(&self, shaft: usize, t: f64, speed: f64) -> f64 {
         let on_it = self.wheels.iter().filter(|wheel| wheel.shaft == shaft);
-        let at_wheels = on_it.map(|it| it.loss.act(it.mass * self.gravity.norm(), speed));
+        let carried = |it: &Wheel| {
+            if it.forces.is_empty() {
+                return it.mass * self.gravity.norm();
+            }
+            let force = Vector::from(it.forces.sum(|action| action.mean(t)));
+            (self.gravity * it.mass + force).norm()
+        };
+        let at_wheels = on_it.map(|it| it.loss.act(carried(it), speed));
         let own = self.shafts[shaft].loss.act(0.0, speed);
         let all = at_wheels.chain(std::iter::once(own));
         all.map(|it| it.torques[0] + it.torques[1]).sum()

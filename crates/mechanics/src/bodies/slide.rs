@@ -5,7 +5,7 @@ use chaindrive_integrate::Prediction;
 
 use crate::seam::Way;
 use crate::tensioner::{Extension, ReducedInertia, Slopes, Weight};
-use crate::{Carrier, Push, PushForce};
+use crate::{Carrier, Forces, Push, PushForce};
 
 /// A tensioner in the system.
 #[derive(Clone, Debug)]
@@ -21,6 +21,10 @@ pub(crate) struct Slide {
     pub(crate) state: Option<usize>,
     /// Masses that it carries.
     pub(crate) carried: Vec<Weight>,
+    /// Forces on it from outside, beside those on the centres that it carries.
+    pub(crate) forces: Forces,
+    /// Point of it on which they act, at assembly; none of a slide, all points of which move alike.
+    pub(crate) forced_at: Option<Point>,
 }
 
 /// Pose of a carrier.

@@ -4,7 +4,7 @@ use super::{conflict, reference};
 use crate::drive::{Adjust, GearPair, Layout, Parts, Rotation, Shaft, StartSpeed, Support};
 use crate::groups::Sets;
 use crate::trains::trains;
-use crate::{Bearing, Coupling, DriveError, Torque};
+use crate::{Action, Bearing, Coupling, DriveError, Torque};
 
 /// Every reason why the shafts of `parts` cannot turn.
 pub(super) fn problems(parts: &Parts) -> Vec<DriveError> {
@@ -30,6 +30,10 @@ fn references(parts: &Parts) -> Vec<DriveError> {
     for (index, turned) in parts.shafts.iter().enumerate() {
         let followed = turned.torques().filter_map(Torque::follows);
         found.extend(followed.filter_map(|other| shaft(parts.shaft_name(index), other)));
+    }
+    for (place, forces) in parts.forces() {
+        let followed = forces.all().filter_map(Action::follows);
+        found.extend(followed.filter_map(|other| shaft(place.clone(), other)));
     }
     for sprocket in &parts.sprockets {
         found.extend(shaft(

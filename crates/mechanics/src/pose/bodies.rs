@@ -2,7 +2,7 @@
 
 use chaindrive_geometry::{ArcSpline, GeometryError, Piece, Point, Segment, Vector};
 
-use super::{Body, BodyKind, backing, carried_bodies};
+use super::{Body, BodyKind, backing, carried_bodies, forces};
 use crate::drive::Parts;
 
 /// Length of a drawn plunger in pitches: long enough to show which way it pushes.
@@ -68,6 +68,7 @@ pub(super) fn of(parts: &Parts) -> Result<Vec<Body>, GeometryError> {
             });
         }
     }
+    bodies.extend(forces::arrows(parts, pitch)?);
     Ok(bodies)
 }
 

@@ -34,11 +34,19 @@ pub struct Instant<'a> {
     pub bush_offset_x: Option<&'a [f64]>,
     /// See `bush_offset_x`.
     pub bush_offset_y: Option<&'a [f64]>,
+    /// Forces from outside on centres x \[N\], (sprockets,); without them arrows show those of the scene where no shaft has turned.
+    pub centre_force_x: Option<&'a [f64]>,
+    /// See `centre_force_x`.
+    pub centre_force_y: Option<&'a [f64]>,
+    /// Forces from outside on tensioners x \[N\], (tensioners,).
+    pub carrier_force_x: Option<&'a [f64]>,
+    /// See `carrier_force_x`.
+    pub carrier_force_y: Option<&'a [f64]>,
 }
 
 impl<'a> Instant<'a> {
     /// Names of the channels of its fields.
-    pub const CHANNELS: [&'static str; 10] = [
+    pub const CHANNELS: [&'static str; 14] = [
         "roller_x",
         "roller_y",
         "sprocket_angle",
@@ -49,6 +57,10 @@ impl<'a> Instant<'a> {
         "joint_offset_y",
         "bush_offset_x",
         "bush_offset_y",
+        "centre_force_x",
+        "centre_force_y",
+        "carrier_force_x",
+        "carrier_force_y",
     ];
 
     /// The instant at which channels have the values that `values` knows by their names.
@@ -64,6 +76,10 @@ impl<'a> Instant<'a> {
             joint_offset_y,
             bush_offset_x,
             bush_offset_y,
+            centre_force_x,
+            centre_force_y,
+            carrier_force_x,
+            carrier_force_y,
         ] = Self::CHANNELS.map(values);
         Self {
             time,
@@ -77,6 +93,10 @@ impl<'a> Instant<'a> {
             joint_offset_y,
             bush_offset_x,
             bush_offset_y,
+            centre_force_x,
+            centre_force_y,
+            carrier_force_x,
+            carrier_force_y,
         }
     }
 
@@ -94,6 +114,10 @@ impl<'a> Instant<'a> {
             joint_offset_y: Some(&seen.joint_offset_y),
             bush_offset_x: Some(&seen.bush_offset_x),
             bush_offset_y: Some(&seen.bush_offset_y),
+            centre_force_x: Some(&seen.centre_force_x),
+            centre_force_y: Some(&seen.centre_force_y),
+            carrier_force_x: Some(&seen.carrier_force_x),
+            carrier_force_y: Some(&seen.carrier_force_y),
         }
     }
 }
@@ -189,6 +213,7 @@ impl Figure {
                 },
                 GuideSupport::Tensioner(tensioner) => self.carried(*tensioner, at)?,
             },
+            BodyKind::Force { on_carrier } => self.force_arrow(body, on_carrier, at)?,
             BodyKind::Carrier { .. } => self.carried(self.tensioner(body), at)?,
             BodyKind::Plunger => {
                 let tensioner = self.tensioner(body);
@@ -207,13 +232,17 @@ impl Figure {
         })
     }
 
-    fn tensioner(&self, body: &Body) -> usize {
+    pub(super) fn tensioner(&self, body: &Body) -> usize {
         let mut tensioners = self.parts.tensioners.iter();
         tensioners.position(|it| it.name == body.name).unwrap_or(0)
     }
 
     /// Coordinate of a tensioner since it was laid.
-    fn coordinate(&self, tensioner: usize, at: &Instant<'_>) -> Result<f64, MissingChannel> {
+    pub(super) fn coordinate(
+        &self,
+        tensioner: usize,
+        at: &Instant<'_>,
+    ) -> Result<f64, MissingChannel> {
         let count = self.parts.tensioners.len();
         let all = entries(at.tensioner_position, "tensioner_position", count)?;
         Ok(all[tensioner])
@@ -232,7 +261,7 @@ impl Figure {
     }
 
     /// Centre of a sprocket: the recorded one, or where its support has it.
-    fn centre(&self, index: usize, at: &Instant<'_>) -> Result<Point, MissingChannel> {
+    pub(super) fn centre(&self, index: usize, at: &Instant<'_>) -> Result<Point, MissingChannel> {
         let count = self.parts.sprockets.len();
         if let (Some(x), Some(y)) = (at.sprocket_x, at.sprocket_y) {
             let x = entries(Some(x), "sprocket_x", count)?[index];
@@ -266,7 +295,7 @@ impl Figure {
 }
 
 /// The entries of a channel, of which there must be `count`.
-fn entries<'a>(
+pub(super) fn entries<'a>(
     values: Option<&'a [f64]>,
     channel: &'static str,
     count: usize,

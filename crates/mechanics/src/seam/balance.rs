@@ -18,6 +18,7 @@ pub(crate) struct Unknown {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Load {
     pub(crate) gravity: f64,
+    /// Of torques, and of forces on chain ends, centres and carriers.
     pub(crate) torque: f64,
 }
 

@@ -78,6 +78,14 @@ pub struct Observation {
     pub sprocket_force_x: Vec<f64>,
     /// See `sprocket_force_x`.
     pub sprocket_force_y: Vec<f64>,
+    /// Force from outside on every centre, x and y \[N\], (sprockets,) each.
+    pub centre_force_x: Vec<f64>,
+    /// See `centre_force_x`.
+    pub centre_force_y: Vec<f64>,
+    /// Force of its support on every centre, x and y \[N\], (sprockets,) each; NaN on a tensioner where the laws were not asked.
+    pub support_force_x: Vec<f64>,
+    /// See `support_force_x`.
+    pub support_force_y: Vec<f64>,
     /// Centres \[m\], (sprockets,) each.
     pub sprocket_x: Vec<f64>,
     /// See `sprocket_x`.
@@ -92,6 +100,10 @@ pub struct Observation {
     pub tensioner_position: Vec<f64>,
     /// Push of every tensioner \[N or N m\], (tensioners,).
     pub tensioner_force: Vec<f64>,
+    /// Force from outside on every tensioner itself, x and y \[N\], (tensioners,) each.
+    pub carrier_force_x: Vec<f64>,
+    /// See `carrier_force_x`.
+    pub carrier_force_y: Vec<f64>,
     /// Pressure above that of the air of oil that can be compressed \[Pa\], (oil columns,).
     pub oil_pressure: Vec<f64>,
     /// The energy ledger.

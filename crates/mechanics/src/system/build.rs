@@ -322,6 +322,8 @@ fn slides(parts: &Parts, places: &Places) -> Vec<Slide> {
                 // Until all are there: see `number_states`.
                 state: None,
                 carried,
+                forces: tensioner.forces.clone(),
+                forced_at: tensioner.forced_at,
             }
         })
         .collect()
@@ -350,6 +352,7 @@ fn wheel(sprocket: &Sprocket, angle: f64, turn: Turn, centre: Option<usize>) -> 
         turn,
         shaft: sprocket.shaft,
         support,
+        forces: sprocket.forces.clone(),
         inertia: sprocket.inertia,
         mass: sprocket.mass,
         mobility: 0.0,

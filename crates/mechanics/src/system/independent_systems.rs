@@ -97,6 +97,12 @@ impl System {
             if let WheelSupport::Carried(slide) = &mut wheel.support {
                 *slide = group.tensioners[*slide];
             }
+            let forces = wheel.forces.all_mut();
+            forces.for_each(|it| it.refer(|index| group.shafts[index]));
+        }
+        for slide in &mut self.bodies.slides {
+            let forces = slide.forces.all_mut();
+            forces.for_each(|it| it.refer(|index| group.shafts[index]));
         }
         for rail in &mut self.bodies.rails {
             if let RailSupport::Carried(slide) = &mut rail.support {

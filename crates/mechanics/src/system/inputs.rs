@@ -36,11 +36,23 @@ impl System {
                     "its motion is given, and no torque changes it; give it an inertia and no motion, and set its speed until a torque is to act",
                 ),
             },
-            Input::Speed { .. } | Input::Angle { .. } | Input::Load { .. } => None,
+            Input::Speed { .. }
+            | Input::Angle { .. }
+            | Input::Load { .. }
+            | Input::CentreForce { .. } => None,
             Input::Force { tensioner: index } => match tensioner(index).dof {
                 Some(_) => None,
                 None => Some("it is locked where it was assembled; give it a spring"),
             },
+            Input::CarrierForce {
+                tensioner: index, ..
+            } => {
+                let slide = tensioner(index);
+                let somewhere = slide.carrier.pivot().is_none() || slide.forced_at.is_some();
+                (!somewhere).then_some(
+                    "an arm does not say on which point of it a force acts; give it `force_at`",
+                )
+            }
             Input::Preload { tensioner: index } | Input::Stiffness { tensioner: index } => {
                 match tensioner(index).push {
                     Push::Spring(_) | Push::TorsionSpring(_) => None,
@@ -138,6 +150,14 @@ impl System {
                 }
                 Input::Force { tensioner } => {
                     self.bodies.inputs.set_force(tensioner, t, course);
+                }
+                Input::CentreForce { sprocket, axis } => {
+                    let inputs = &mut self.bodies.inputs;
+                    inputs.set_centre_force(sprocket, axis, t, course);
+                }
+                Input::CarrierForce { tensioner, axis } => {
+                    let inputs = &mut self.bodies.inputs;
+                    inputs.set_carrier_force(tensioner, axis, t, course);
                 }
                 Input::Centre { sprocket, axis } => {
                     if let Some(motion) = self.centre_motion(sprocket, axis) {
@@ -354,10 +374,12 @@ impl System {
             _ => None,
         });
         let ends = self.chains.iter().map(|member| member.chain.next_knot(t));
+        let forces = self.bodies.all_forces().map(|force| force.next_knot(t));
         let mut all = shafts
             .chain(wheels)
             .chain(rails)
             .chain(ends)
+            .chain(forces)
             .chain([self.bodies.inputs.next_change(t)])
             .chain([(t < 0.0).then_some(0.0)]);
         earliest(&mut all)

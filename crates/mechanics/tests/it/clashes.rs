@@ -4,8 +4,8 @@ use chaindrive_contact::Law;
 use chaindrive_geometry::{Arc, ArcSpline, Piece, Point, Segment, Vector, bar};
 use chaindrive_mechanics::carriers::{Arm, Slider};
 use chaindrive_mechanics::{
-    AssemblyError, Carrier, Clash, Drive, DriveError, Guide, GuideSupport, Layout, Parts, Push,
-    Support, Tensioner, Touches,
+    AssemblyError, Carrier, Clash, Drive, DriveError, Forces, Guide, GuideSupport, Layout, Parts,
+    Push, Support, Tensioner, Touches,
 };
 
 use crate::marine;
@@ -241,6 +241,8 @@ fn guides_on_different_supports_must_not_cross() {
                 mass: Some(1.0),
             }),
             push: Push::Locked,
+            forces: Forces::default(),
+            forced_at: None,
         });
         parts.guides[1].support = GuideSupport::Tensioner(0);
         parts
@@ -308,6 +310,8 @@ fn profiles_stand_where_the_chain_meets_them() {
             stiffness: 1e6,
             damping: 0.0,
         }),
+        forces: Forces::default(),
+        forced_at: None,
     });
     parts.sprockets[2].support = Support::Tensioner(0);
     parts.guides[0].support = GuideSupport::Tensioner(0);
@@ -350,6 +354,8 @@ fn faces_on_arms_turn_about_the_pivot() {
             stiffness: 1.0,
             damping: 0.0,
         }),
+        forces: Forces::default(),
+        forced_at: None,
     });
     let assembled = Drive::new(parts)
         .expect("sound")

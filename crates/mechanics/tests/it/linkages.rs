@@ -12,9 +12,9 @@ use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{InstructionSet, Moment, Registers, SecondOrderSystem, Weights};
 use chaindrive_mechanics::inside::{chain, teeth};
 use chaindrive_mechanics::{
-    Assembled, ChainModel, Clearance, Coupling, End, Ends, Flank, Flow, FreeRoller, Joint, Layout,
-    Motion, Observation, Parts, Record, RigidLinks, RollerModel, Rotation, Shaft, Sprocket,
-    StartSpeed, Support, Surface, System, Torque,
+    Action, Assembled, ChainModel, Clearance, Coupling, End, Ends, Flank, Flow, FreeRoller, Joint,
+    Layout, Motion, Observation, Parts, Record, RigidLinks, RollerModel, Rotation, Shaft, Sprocket,
+    StartSpeed, Support, Surface, System,
 };
 use nalgebra::DVector;
 
@@ -52,7 +52,7 @@ fn bicycle(model: ChainModel) -> Parts {
     };
     let driven = Rotation::Free {
         drive: Vec::new(),
-        load: vec![Torque::Constant { torque: 5.0 }],
+        load: vec![Action::Constant { value: 5.0 }.into()],
         start: StartSpeed::Joined,
     };
     let driver = Rotation::Prescribed(Motion::Constant { rate: -9.42 });

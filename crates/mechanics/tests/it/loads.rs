@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use chaindrive_integrate::{Method, SecondOrderSystem, State};
 use chaindrive_mechanics::{
-    Argument, Assembled, Drive, Flow, Observation, Order, Rotation, StartSpeed, Table, Torque,
+    Action, Argument, Assembled, Drive, Flow, Observation, Order, Rotation, StartSpeed, Table,
 };
 
 use crate::pieces::{assembled, observed};
@@ -28,20 +28,25 @@ fn following(of: Option<usize>) -> Rotation {
     };
     let (angles, torques) = TABLE.into_iter().unzip();
     Rotation::Free {
-        drive: vec![Torque::Orders {
-            of,
-            terms: vec![order(0.4, 12.0, 0.3)],
-        }],
+        drive: vec![
+            Action::Orders {
+                of,
+                terms: vec![order(0.4, 12.0, 0.3)],
+            }
+            .into(),
+        ],
         load: vec![
-            Torque::Constant { torque: -2.0 },
-            Torque::Orders {
+            Action::Constant { value: -2.0 }.into(),
+            Action::Orders {
                 of,
                 terms: vec![order(0.5, 1.5, 0.0), order(0.3, 8.0, -1.0)],
-            },
-            Torque::Table {
+            }
+            .into(),
+            Action::Table {
                 over: Argument::Angle { of, turns: 2 },
                 curve: Table::new(angles, torques).expect("the angles increase"),
-            },
+            }
+            .into(),
         ],
         start: StartSpeed::Joined,
     }

@@ -5,7 +5,7 @@ use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Weights};
 use chaindrive_mechanics::carriers::Slider;
 use chaindrive_mechanics::pushes::{Hydraulic, OilColumn};
 use chaindrive_mechanics::{
-    Assembled, Carrier, Layout, Observation, Parts, Push, Support, System, Tensioner,
+    Assembled, Carrier, Forces, Layout, Observation, Parts, Push, Support, System, Tensioner,
 };
 
 use crate::pieces;
@@ -38,6 +38,8 @@ fn tensioned(column: Option<OilColumn>) -> Parts {
             relieving: 100.0,
             column,
         }),
+        forces: Forces::default(),
+        forced_at: None,
     }];
     parts
 }

@@ -4,9 +4,9 @@ use chaindrive_contact::{Dissipation, Elastic, Friction, Law, elastic::Power};
 use chaindrive_geometry::{Point, Seat, Side, Tip, ToothForm, ToothGap, Vector};
 use chaindrive_integrate::{Moment, SecondOrderSystem, State};
 use chaindrive_mechanics::{
-    Adjust, Assembled, Chain, ChainModel, Drive, Ends, Fit, Layout, LinkBody, Observation, Parts,
-    PlacedChain, PretensionAt, ShaftLoss, SpanStart, Sprocket, Stop, Strength, Support, Surface,
-    System, Tighten, Tolerance,
+    Adjust, Assembled, Chain, ChainModel, Drive, Ends, Fit, Forces, Layout, LinkBody, Observation,
+    Parts, PlacedChain, PretensionAt, ShaftLoss, SpanStart, Sprocket, Stop, Strength, Support,
+    Surface, System, Tighten, Tolerance,
 };
 
 /// A linear law without loss.
@@ -120,6 +120,7 @@ pub(crate) fn sprocket(
         centre: Point::from(centre),
         shaft: 0,
         support: Support::Fixed,
+        forces: Forces::default(),
         inertia: 0.0,
         mass: 1.0,
         surface,

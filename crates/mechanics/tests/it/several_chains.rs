@@ -8,8 +8,8 @@ use chaindrive_contact::{Dissipation, Law};
 use chaindrive_geometry::{Point, Vector};
 use chaindrive_integrate::{Method, Moment, SecondOrderSystem, State, Weights};
 use chaindrive_mechanics::{
-    Assembled, ChainModel, Clearance, Coupling, Ends, GearPair, Joint, Motion, Observation, Parts,
-    PlacedChain, RigidLinks, RollerModel, Rotation, Shaft, Sprocket, StartSpeed, System, Torque,
+    Action, Assembled, ChainModel, Clearance, Coupling, Ends, GearPair, Joint, Motion, Observation,
+    Parts, PlacedChain, RigidLinks, RollerModel, Rotation, Shaft, Sprocket, StartSpeed, System,
 };
 
 const PITCH: f64 = 0.0127;
@@ -43,7 +43,7 @@ pub(crate) fn chain(links: usize, stops: [usize; 2]) -> PlacedChain {
 fn free(load: f64) -> Rotation {
     Rotation::Free {
         drive: Vec::new(),
-        load: vec![Torque::Constant { torque: load }],
+        load: vec![Action::Constant { value: load }.into()],
         start: StartSpeed::Joined,
     }
 }

@@ -1,5 +1,6 @@
 //! From the scene as written to the drive: names become indices, choices become models.
 
+mod action;
 mod articulation;
 mod body;
 mod catalogue;
@@ -11,6 +12,7 @@ mod cursor;
 mod ends;
 mod film;
 mod flank;
+mod force;
 mod guide;
 mod housing;
 mod law;
@@ -130,7 +132,7 @@ fn parts(
         resolved.push(chain::resolve(scene, chain, findings));
     }
     findings.chain = None;
-    let tensioners = tensioner::resolve_all(scene, findings);
+    let mut tensioners = tensioner::resolve_all(scene, findings);
     let gravity = gravity(scene, findings);
     stack::refuse_elsewhere(scene, findings);
     let turning = shafts::resolve(scene, names, findings);
@@ -159,8 +161,13 @@ fn parts(
     findings.chain = None;
     let layouts: Vec<_> = layouts.into_iter().collect::<Option<_>>()?;
     let (mut sprockets, guides, turning) = (sprockets?, guides?, turning?);
-    for (sprocket, shaft) in sprockets.iter_mut().zip(turning.of_sprockets) {
-        sprocket.shaft = shaft;
+    let bodies = sprockets.iter_mut().zip(turning.forces.sprockets);
+    for ((sprocket, forces), shaft) in bodies.zip(turning.of_sprockets) {
+        (sprocket.shaft, sprocket.forces) = (shaft, forces);
+    }
+    let carriers = tensioners.iter_mut().flatten();
+    for (tensioner, forced) in carriers.zip(turning.forces.tensioners) {
+        (tensioner.forces, tensioner.forced_at) = forced;
     }
     let mut chains = Vec::new();
     let mut uncounted = Vec::new();

@@ -1,13 +1,8 @@
-//! Prescribed motions and torques.
+//! Prescribed motions.
 
-use std::f64::consts::TAU;
-
-use chaindrive_mechanics::{
-    Argument, DriveError, Harmonic, Motion, Order, SpeedTable, Table, Torque,
-};
+use chaindrive_mechanics::{DriveError, Harmonic, Motion, Order, SpeedTable, Table};
 
 use super::cursor::Cursor;
-use super::ends::Ends;
 use crate::scene::schema::{self, SceneText};
 use crate::scene::suggest::one_of;
 use chaindrive_quantities::{Angle, AngularSpeed, Length, Speed};
@@ -186,7 +181,7 @@ fn resolve<P: Copy + Into<f64>, R: Copy + Into<f64>>(
     })
 }
 
-fn orders<A: Copy + Into<f64>>(terms: &[schema::OrderTerm<A>]) -> Vec<Order> {
+pub(super) fn orders<A: Copy + Into<f64>>(terms: &[schema::OrderTerm<A>]) -> Vec<Order> {
     let order = |term: &schema::OrderTerm<A>| Order {
         amplitude: term.amplitude.into(),
         order: term.order.0,
@@ -195,104 +190,7 @@ fn orders<A: Copy + Into<f64>>(terms: &[schema::OrderTerm<A>]) -> Vec<Order> {
     terms.iter().map(order).collect()
 }
 
-/// Torques of one list, each with its place.
-pub(super) fn torques(
-    list: &[schema::Torque],
-    shafts: &Ends<'_>,
-    mut at: Cursor<'_, '_>,
-) -> Option<Vec<Torque>> {
-    let torques = list.iter().enumerate();
-    let torques: Vec<_> = torques
-        .map(|(i, text)| torque(text, shafts, at.entry(i)))
-        .collect();
-    torques.into_iter().collect()
-}
-
-fn torque(text: &schema::Torque, shafts: &Ends<'_>, mut at: Cursor<'_, '_>) -> Option<Torque> {
-    let of = match text {
-        schema::Torque::Orders { of: Some(of), .. }
-        | schema::Torque::AngleTable { of: Some(of), .. } => Some(shafts.one(of, at.key("of"))?),
-        _ => None,
-    };
-    let over = |over, curve: Option<Table>| curve.map(|curve| Torque::Table { over, curve });
-    match text {
-        schema::Torque::Constant { torque } => Some(Torque::Constant { torque: torque.0 }),
-        schema::Torque::Ramp {
-            torque,
-            start,
-            duration,
-        } => Some(Torque::Ramp {
-            torque: torque.0,
-            start: start.0,
-            duration: duration.0,
-        }),
-        schema::Torque::Resistance { linear, quadratic } => Some(Torque::Resistance {
-            linear: linear.0,
-            quadratic: quadratic.0,
-        }),
-        schema::Torque::Harmonic {
-            amplitude,
-            order,
-            phase,
-        } => Some(Torque::Orders {
-            of,
-            terms: vec![Order {
-                amplitude: amplitude.0,
-                order: order.0,
-                phase: phase.0,
-            }],
-        }),
-        schema::Torque::Orders { terms, .. } => Some(Torque::Orders {
-            of,
-            terms: orders(terms),
-        }),
-        schema::Torque::TimeTable { times, torques } => {
-            over(Argument::Time, table(times, torques, "times", at))
-        }
-        schema::Torque::SpeedTable { speeds, torques } => {
-            over(Argument::Speed, table(speeds, torques, "speeds", at))
-        }
-        schema::Torque::AngleTable {
-            turns,
-            angles,
-            torques,
-            ..
-        } => {
-            let turns = turns.0;
-            let curve = table(angles, torques, "angles", at.again());
-            let resolved = over(Argument::Angle { of, turns }, curve)?;
-            let angles = || angles.iter().map(|angle| angle.0);
-            let least = angles().fold(f64::INFINITY, f64::min);
-            let most = angles().fold(f64::NEG_INFINITY, f64::max);
-            if least > 1e-9 || most < f64::from(turns) * TAU - 1e-9 {
-                let of_turns = if turns == 1 { "turn" } else { "two turns" };
-                let message = format!(
-                    "the table covers {:.1}° to {:.1}° of the {of_turns}",
-                    least.to_degrees(),
-                    most.to_degrees()
-                );
-                let end = 360 * turns;
-                let hint = format!("let it run from 0 to {end} deg, with the same torque at both");
-                at.key("angles").refuse(message, hint);
-                return None;
-            }
-            if let [first, .., last] = torques.as_slice()
-                && (first.0 - last.0).abs() > 1e-9 * first.0.abs().max(last.0.abs())
-            {
-                let message = format!(
-                    "the torque jumps from {} to {} N m where it repeats",
-                    last.0, first.0
-                );
-                let hint = "give the same torque at both ends; a quick change takes two points close together";
-                at.key("torques").refuse(message, hint);
-                return None;
-            }
-            Some(resolved)
-        }
-    }
-}
-
-fn table<A: Copy + Into<f64>, V: Copy + Into<f64>>(
+pub(super) fn table<A: Copy + Into<f64>, V: Copy + Into<f64>>(
     arguments: &[A],
     values: &[V],
     key: &str,

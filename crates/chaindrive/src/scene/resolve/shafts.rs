@@ -4,7 +4,8 @@ use chaindrive_mechanics::{Coupling, GearPair, Rotation, Shaft, StartSpeed};
 
 use super::cursor::Cursor;
 use super::ends::Ends;
-use super::{Findings, Names, loss, motion};
+use super::force::{self, ForcesOfBodies};
+use super::{Findings, Names, action, loss, motion};
 use crate::scene::schema::{self, SceneText};
 use chaindrive_quantities::{Angle, AngularSpeed};
 
@@ -17,6 +18,8 @@ pub(super) struct Turning {
     pub(super) of_sprockets: Vec<usize>,
     pub(super) couplings: Vec<Coupling>,
     pub(super) gears: Vec<GearPair>,
+    /// Forces on bodies, which may follow the angles of shafts.
+    pub(super) forces: ForcesOfBodies,
 }
 
 pub(super) fn resolve(
@@ -65,6 +68,7 @@ pub(super) fn resolve(
             loss,
         }));
     }
+    let forces = force::resolve(scene, &ends, findings);
     let couplings = scene.couplings.iter().enumerate();
     let couplings: Vec<_> = couplings
         .map(|(i, text)| {
@@ -90,6 +94,7 @@ pub(super) fn resolve(
         shafts: shafts.into_iter().collect::<Option<_>>()?,
         couplings: couplings.into_iter().collect::<Option<_>>()?,
         gears: gears.into_iter().collect::<Option<_>>()?,
+        forces: forces?,
         of_sprockets,
     })
 }
@@ -151,8 +156,8 @@ fn rotation(
         at.refuse_given([("speed", speed.is_some())], message, hint);
         return motion::turn(given, scene, at.key("motion")).map(Rotation::Prescribed);
     }
-    let drive = motion::torques(drive, ends, at.key("drive"));
-    let load = motion::torques(load, ends, at.key("load"));
+    let drive = action::torques(drive, ends, at.key("drive"));
+    let load = action::torques(load, ends, at.key("load"));
     Some(Rotation::Free {
         drive: drive?,
         load: load?,

@@ -2,7 +2,7 @@
 
 use chaindrive_contact::Elastic;
 use chaindrive_geometry::{Side, ToothGap};
-use chaindrive_mechanics::{Sprocket, Support, Surface, Tolerance, ToothStack};
+use chaindrive_mechanics::{Forces, Sprocket, Support, Surface, Tolerance, ToothStack};
 
 use serde_json::json;
 
@@ -89,6 +89,8 @@ fn resolve(
         centre: point(text.centre),
         shaft: 0,
         support,
+        // Found where the shafts are known.
+        forces: Forces::default(),
         inertia: text.inertia.map_or(0.0, f64::from),
         mass: text.mass.map_or(0.0, f64::from),
         surface: surface?,

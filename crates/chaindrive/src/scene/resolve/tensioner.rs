@@ -1,7 +1,7 @@
 //! Tensioners.
 
 use chaindrive_mechanics::pushes::Oil;
-use chaindrive_mechanics::{Carrier, Push, Tensioner};
+use chaindrive_mechanics::{Carrier, Forces, Push, Tensioner};
 use chaindrive_quantities::{Ratio, check};
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
@@ -49,6 +49,9 @@ fn resolve(text: &schema::Tensioner, mut at: Cursor<'_, '_>) -> Option<Tensioner
         name: text.name.clone(),
         carrier,
         push,
+        // Found where the shafts are known.
+        forces: Forces::default(),
+        forced_at: None,
     })
 }
 

@@ -6,6 +6,7 @@
 
 mod chain;
 mod contact;
+mod force;
 mod guide;
 mod housing;
 mod links;
@@ -21,6 +22,7 @@ mod written;
 
 pub(crate) use chain::{Chain, End, NamedChain, Start};
 pub(crate) use contact::{Contact, Contacts, Flank};
+pub(crate) use force::Force;
 pub(crate) use guide::{Face, Guide, GuideSupport, TravelSide};
 pub(crate) use housing::Housing;
 pub(crate) use links::{ChainModel, Joint, Link, Roller, Rollers};

@@ -86,7 +86,7 @@ pub(crate) struct Term<Position> {
     pub(crate) phase: Angle,
 }
 
-/// One order of a motion or a torque: what repeats so many times a turn.
+/// One order of a motion, a torque or a force: what repeats so many times a turn.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Order_of_{Amplitude}")]
@@ -95,10 +95,10 @@ pub(crate) struct OrderTerm<Amplitude> {
     #[schemars(extend(
         "exclusiveMinimum" = 0,
         "examples" = [0.5, 2, 7],
-        "x-remedy" = "the mean is no order: give that of a motion as its `speed`, that of a torque as one of the kind `constant` in the same list, that of a centre or guide as its place",
+        "x-remedy" = "the mean is no order: give that of a motion as its `speed`, that of a torque or force as one of the kind `constant` in the same list, that of a centre or guide as its place",
     ))]
     pub(crate) order: Ratio,
-    /// Amplitude (an angle, a length or a torque).
+    /// Amplitude (an angle, a length, a torque or a force).
     pub(crate) amplitude: Amplitude,
     /// Phase where the simulation began, before the run-in [rad].
     #[serde(default)]
@@ -122,7 +122,7 @@ pub(crate) enum WorkingPoint {
     WorkingPoint,
 }
 
-/// Turns after which a table of torques repeats: 1, or 2 for engines of four strokes.
+/// Turns after which a table of torques or forces repeats: 1, or 2 for engines of four strokes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(transparent)]
 #[schemars(extend("minimum" = 1, "maximum" = 2))]

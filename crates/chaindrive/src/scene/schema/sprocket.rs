@@ -4,7 +4,7 @@ use chaindrive_mechanics::{Bearing, ShaftDrag};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Contact, Flank, Motion, StartSpeed, Torque, Written};
+use super::{Contact, Flank, Force, Motion, StartSpeed, Torque, Written};
 use chaindrive_quantities::{
     Angle, AngularSpeed, Damping, Inertia, Length, Mass, Ratio, Speed, Stiffness,
 };
@@ -63,6 +63,13 @@ pub(crate) struct Sprocket {
     pub(crate) mass: Option<Mass>,
     /// Support of the centre; absent: a fixed bearing.
     pub(crate) support: Option<Support>,
+    /// Forces on the centre along x, beside those of the chain: a fixed bearing bears them, a prescribed motion works against them, on springs or a
+    /// tensioner they move the centre.
+    #[serde(default)]
+    pub(crate) force_x: Vec<Force>,
+    /// Forces on the centre along y.
+    #[serde(default)]
+    pub(crate) force_y: Vec<Force>,
     /// Contact with the rollers, where it differs from `contact.teeth`.
     #[serde(default)]
     pub(crate) contact: Contact,

@@ -25,7 +25,8 @@ const CRATES: [Storeys; 6] = [
                 "lanes",
             ],
             &["engagement", "order", "table"],
-            &["course", "shaft_loss", "speed_table", "watch"],
+            &["action", "course", "shaft_loss", "speed_table", "watch"],
+            &["force"],
             &[
                 "articulation",
                 "coupling",

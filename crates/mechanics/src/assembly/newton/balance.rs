@@ -47,8 +47,14 @@ fn add_bodies(system: &System, q: &[f64], load: Load, sum: &mut Sum<'_>) {
             sum.force(dof, -load.torque * (ratio * torque));
         }
     }
-    for wheel in &bodies.wheels {
+    let at = Moment::stateless(begin, q, &still);
+    for (index, wheel) in bodies.wheels.iter().enumerate() {
         if let WheelSupport::Springs { dof, stiffness, .. } = &wheel.support {
+            if let Some(force) = bodies.centre_force(index, at) {
+                for axis in 0..2 {
+                    sum.force(dof + axis, -load.torque * force[axis]);
+                }
+            }
             for axis in 0..2 {
                 let away = q[dof + axis] - wheel.centre[axis];
                 let weight = load.gravity * wheel.mass * bodies.gravity[axis];
@@ -66,7 +72,7 @@ fn add_bodies(system: &System, q: &[f64], load: Load, sum: &mut Sum<'_>) {
             }
         }
     }
-    for slide in &bodies.slides {
+    for (index, slide) in bodies.slides.iter().enumerate() {
         let Some(dof) = slide.dof else { continue };
         let s = q[dof];
         let Extension { length, lever } = slide.carrier.extension(s);
@@ -95,6 +101,11 @@ fn add_bodies(system: &System, q: &[f64], load: Load, sum: &mut Sum<'_>) {
                 sum.stiffen(dof, dof, -weight.dot(&way.second));
             }
         }
+        bodies.each_force_on(index, pose, at, |force| {
+            sum.force(dof, -load.torque * force.along);
+            // ∂²(−F·x)/∂s² = −F·∂²x/∂s²
+            sum.stiffen(dof, dof, -load.torque * force.bend);
+        });
     }
 }
 
@@ -108,7 +119,8 @@ pub(super) fn residual(system: &System, unknowns: &Unknowns, q: &[f64], balance:
         mass = mass.max(member.chain.weights()[1]);
         floor = floor.max(rounding(member, q) / ACCEPTED);
     }
-    let scale = tension.max(mass * gravity).max(floor);
+    let forced = system.bodies.largest_force(system.begin);
+    let scale = tension.max(mass * gravity).max(floor).max(forced);
     let scaled = balance.gradient.iter().zip(&unknowns.scale);
     scaled
         .map(|(g, lever)| (g / lever.sqrt()).abs())

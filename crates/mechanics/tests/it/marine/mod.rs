@@ -3,7 +3,7 @@
 use chaindrive_contact::Law;
 use chaindrive_geometry::Vector;
 use chaindrive_mechanics::{
-    ChainModel, Ends, Motion, Parts, Rotation, Shaft, Sprocket, StartSpeed, Torque,
+    Action, ChainModel, Ends, Motion, Parts, Rotation, Shaft, Sprocket, StartSpeed,
 };
 
 use crate::pieces;
@@ -25,7 +25,7 @@ pub(crate) fn parts(law: Law) -> Parts {
             })
         } else {
             let load = if name == "camshaft" {
-                vec![Torque::Constant { torque: 5e3 }]
+                vec![Action::Constant { value: 5e3 }.into()]
             } else {
                 Vec::new()
             };
