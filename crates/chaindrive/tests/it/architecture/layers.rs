@@ -129,6 +129,7 @@ const CRATES: [Storeys; 6] = [
                 "law",
                 "new_file",
                 "signals",
+                "unit",
             ],
             &["friction", "profile"],
             &["drive"],
