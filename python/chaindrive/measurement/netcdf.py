@@ -69,9 +69,9 @@ def _time_of(variable: xr.DataArray) -> str | None:
 
 def _seconds(time: xr.DataArray) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     if time.dtype.kind == "M":
-        return (time.to_numpy() - time.to_numpy()[0]) / np.timedelta64(1, "s")
+        return np.asarray((time.to_numpy() - time.to_numpy()[0]) / np.timedelta64(1, "s"))
     if time.dtype.kind == "m":
-        return time.to_numpy() / np.timedelta64(1, "s")
+        return np.asarray(time.to_numpy() / np.timedelta64(1, "s"))
     unit = str(time.attrs.get("units", "s")).partition(" since ")[0]
     found = unit_of(unit)
     return _floats(time) * (found.factor if found.si == "s" else 1.0)

@@ -150,7 +150,7 @@ def _number(value: float) -> str:
 
 def as_text(sections: list[dict[str, Any]]) -> str:
     """Return sections as text: tables with columns as wide as their contents."""
-    lines = []
+    lines: list[str] = []
     for section in sections:
         lines += ["", section["title"]] if lines else [section["title"]]
         table = [section["columns"], *section["rows"]] if section["rows"] else []
