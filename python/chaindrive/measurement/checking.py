@@ -39,6 +39,8 @@ _Floats = NDArray[np.float64]
 
 #: Run that a check simulates at most [s]: a check takes a look, and no fit's time (assumed).
 _LONGEST = 1.0
+#: Samples of a run over those of the measurement [–].
+_DENSER = 4
 #: Standard error over half the range that a record is to reach [–] (assumed).
 _WANTED = 0.1
 #: Slips of units that are looked for where means differ: their factors, and what they are.
@@ -171,10 +173,12 @@ def run_for(
         channel = data[name]
         time = data[str(channel.dims[0])]
         seconds = max(seconds, float(time[-1] - time[0]))
-        # A low-pass is computed at eight times its corner.
+        # A low-pass is computed at more than eight times its corner.
         rate = max(
-            rate, float(channel.attrs["sampling_rate"]), 8.0 * (sensor_of(data, name).corner or 0.0)
+            rate, float(channel.attrs["sampling_rate"]), 2.0 * (sensor_of(data, name).corner or 0.0)
         )
+    # Of more samples than the rig takes one can take as the rig does.
+    rate *= _DENSER
     # A first look tells the places that there are: labels of spans, sprockets and so on.
     every = min(1.0 / rate, float(drive.run_defaults.get("every", 1.0 / rate)))
     first = simulate(drive, until=2.0 * every, every=every, run_in=0, record="all", error=False)
@@ -267,7 +271,7 @@ def _dataset(
         str(it) for it in findings
     ]
     attributes: dict[str, Any] = {"problems": problems, "record_length": seconds}
-    sections = [_channels(rows, data, problems)]
+    sections = [_channels(rows, data, findings)]
     if found is not None and moved is not None:
         half = np.array([it.half_range for it in found.parameters])
         # An error falls with the root of the length.
@@ -305,7 +309,9 @@ def _texts(texts: Any) -> Any:
     return np.asarray(list(texts), dtype=np.str_)
 
 
-def _channels(rows: list[Corresponding], data: xr.Dataset, problems: list[str]) -> dict[str, Any]:
+def _channels(
+    rows: list[Corresponding], data: xr.Dataset, findings: list[Finding]
+) -> dict[str, Any]:
     told = [
         [
             it.name,
@@ -318,11 +324,7 @@ def _channels(rows: list[Corresponding], data: xr.Dataset, problems: list[str]) 
         for it in rows
     ]
     words = [f"The record: {data.attrs['findings_note']}."] if data.attrs["findings_note"] else []
-    words += [
-        f"{it[:1].upper()}{it[1:]}."
-        for it in problems
-        if not any(it.startswith(one.name) for one in rows)
-    ]
+    words += [f"{it}." for it in findings]
     return {
         "title": f"what {data.attrs['measured_from']} can say",
         "columns": ["channel", "quantity", "unit", "mean measured", "of the drive", "so"],

@@ -117,14 +117,16 @@ def open_to(drive: Drive, paths: Iterable[str]) -> Drive:
     for path in paths:
         table, _, key = path.rpartition(".")
         known = _at(full, table) if table and not path.startswith(_SENSORS) else None
-        kind = known.get("kind") if isinstance(known, Mapping) else None
+        if not isinstance(known, Mapping) or key not in known:
+            continue
+        kind = known.get("kind")
         written = _at(drive.to_dict(), table)
         if kind is None or (isinstance(written, Mapping) and "kind" in written):
             continue
         own = {} if not isinstance(written, Mapping) else dict(written)
         try:
             opened = opened.replace({table: own | {"kind": kind, key: known[key]}})
-        except (SceneError, KeyError):
+        except SceneError:
             return drive.resolved()
     return opened if not diff(drive.resolved(), opened.resolved()) else drive.resolved()
 

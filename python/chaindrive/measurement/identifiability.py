@@ -132,8 +132,10 @@ def identifiability(
         spread = np.sqrt(np.diag(spreads))
         identified = np.isfinite(spread)
         deviations[loud[identified]] = (spread / size[loud] * half[loud])[identified]
-        scaled = spreads / np.outer(spread, spread)
-        correlation[np.ix_(loud, loud)] = np.where(np.isfinite(scaled), scaled, np.nan)
+        product = np.outer(spread, spread)
+        finite = np.isfinite(product) & np.isfinite(spreads)
+        scaled = np.divide(spreads, product, where=finite, out=np.full_like(spreads, np.nan))
+        correlation[np.ix_(loud, loud)] = scaled
     return Identifiability(
         list(parameters), information, eigenvalues, directions, floor, deviations, correlation
     )

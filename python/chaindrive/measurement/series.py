@@ -114,10 +114,10 @@ def simulated_series(
     even, values = longest_even(time[:-1], quantity.of(run, sensor)[:-1])
     read = sensor.observe(values, even)
     own = (even.size - 1) / float(even[-1] - even[0])
-    count = max(8, round(float(even[-1] - even[0]) * min(rate, own)) + 1)
-    # Samples of a rig are taken, not averaged: what is above half their rate folds down.
-    sampled = np.linspace(even[0], even[-1], count)
-    readings = np.interp(sampled, even, read)
+    # Samples of a rig are taken, not averaged: what is above half their rate folds down, and a line
+    # between two of them would cut the peaks of impacts.
+    among = slice(None, None, max(1, round(own / rate)))
+    sampled, readings = even[among], read[among]
     angle = None
     if shaft is not None and ("sprocket_angle" in run or "shaft_angle" in run):
         angle = _rising(np.interp(sampled, time, turning(run, shaft)[0]), shaft)
