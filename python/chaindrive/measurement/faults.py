@@ -13,6 +13,8 @@ _Floats = NDArray[np.float64]
 
 #: Equal samples in a row at the bound of the range that are clipping (assumed).
 _AT_BOUND = 3
+#: Samples at the bound over those at the reading next to it from which it is clipping (assumed).
+_CUT = 5
 #: Values that a channel has to take before its bounds tell anything: fewer are a switch (assumed).
 _LEVELS = 16
 #: Samples in a row that a reading stands still while it is a dropout, as a multiple of the
@@ -39,8 +41,15 @@ def faults_of(values: _Floats, name: str, full_scale: float | None = None) -> li
         long = (good[starts] == bound) & (lengths >= _AT_BOUND)
         count = int(lengths[long].sum())
         at_scale = full_scale is not None and abs(bound) >= full_scale * (1.0 - 1e-4)
-        # A signal turns at its bound once in a while; one that is cut stays there, again and again.
-        if np.count_nonzero(long) >= 2 or (at_scale and count):
+        if np.count_nonzero(long) < (1 if at_scale else 2) or (full_scale and not at_scale):
+            continue
+        # A signal that steps by digits turns at its highest one, and is there 2.4 times as long as
+        # at the next one; one that is cut stays there.
+        inner = good[good != bound]
+        beside = int(
+            np.count_nonzero(inner == (inner.max() if word == "greatest" else inner.min()))
+        )
+        if count >= max(_CUT * beside, 2 * _AT_BOUND):
             text = f"clipped: {count} samples stand in rows at the {word} reading, {bound:.6g}"
             found.append(Finding("clipped", name, text))
     inside = (good[starts] != good.max()) & (good[starts] != good.min()) | (good[starts] == 0.0)

@@ -133,7 +133,9 @@ def measured(
         channel = raw.named(name)
         base, kept = of[channel.name]
         values, about = _in_si(channel, sensor, kept)
-        findings += faults_of(channel.values[kept], name, channel.full_scale)
+        told = any(it.kind == "not-a-number" and it.channel == name for it in findings)
+        faults = faults_of(channel.values[kept], name, channel.full_scale)
+        findings += [it for it in faults if not (told and "no value" in it.text)]
         about["sampling_rate"] = sampling_rate(bases[base])
         key = name.replace("/", " ")
         variables[key] = labelled((base,), values, about)
@@ -148,7 +150,7 @@ def measured(
     coordinates = indexed(dimensions, {})
     for base in bases:
         coordinates[base].attrs.update({"units": "s", "long_name": "time"})
-    faults = [it for it in findings if it.kind not in _HARMLESS]
+    serious = [it for it in findings if it.kind not in _HARMLESS]
     attributes = {
         "format": FORMAT,
         "measured_from": _core.one_line(source),
@@ -157,9 +159,9 @@ def measured(
     }
     dataset = xr.Dataset(variables, coords=coordinates, attrs=attributes)
     dataset.attrs["summary"] = _summary(dataset, findings)
-    if faults:
-        told = "; ".join(map(str, faults[:6])) + (
-            f"; {len(faults) - 6} more" if len(faults) > 6 else ""
+    if serious:
+        told = "; ".join(map(str, serious[:6])) + (
+            f"; {len(serious) - 6} more" if len(serious) > 6 else ""
         )
         warn(f"{source}: {told}", MeasurementWarning)
     return dataset
