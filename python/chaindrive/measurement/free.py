@@ -91,7 +91,7 @@ def free_parameters(
     scene = drive.resolved().to_dict()
     found = []
     for path, bounds in free.items():
-        if isinstance(bounds, str) or len(bounds) != 2:
+        if not isinstance(bounds, list | tuple) or len(bounds) != 2:
             raise MeasurementError(f"free[{path!r}] = {bounds!r} is no pair of bounds", path)
         if path.startswith(_SENSORS):
             found.append(_of_sensor(data, path, bounds))

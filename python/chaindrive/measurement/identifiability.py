@@ -59,12 +59,13 @@ class Identifiability:
         """Combinations that are not identified: scaled eigenvalue, what it must exceed, words."""
         loud = [n for n, it in enumerate(self.parameters) if it not in self.silent]
         own = [self.parameters[n] for n in loud]
+        effect = np.sqrt(np.diag(self.information))[loud]
         found = []
         rows = zip(self.eigenvalues, self.floor, self.directions.T, strict=True)
         for value, floor, direction in rows:
             least = max(LEAST_EIGENVALUE, _FLOORS * floor)
             if np.isfinite(value) and value < least:
-                found.append((float(value), float(least), _named(own, direction[loud])))
+                found.append((float(value), float(least), _named(own, direction[loud], effect)))
         return found
 
     @property
@@ -150,10 +151,11 @@ def _inverse(values: _Floats, vectors: _Floats, is_lost: NDArray[np.bool_]) -> _
     return found
 
 
-def _named(parameters: Sequence[FreeParameter], direction: _Floats) -> str:
+def _named(parameters: Sequence[FreeParameter], direction: _Floats, effect: _Floats) -> str:
     """Return a combination in words: a product or quotient of two, else how they go together."""
     steps = direction * np.array([it.half_range for it in parameters])
-    share = np.abs(direction) / np.abs(direction).max()
+    # What moves as much belongs, however small its step is.
+    share = np.abs(direction * effect) / np.abs(direction * effect).max()
     parts = [
         (it, float(step))
         for it, step, own in zip(parameters, steps, share, strict=True)
