@@ -117,7 +117,7 @@ def test_signals_are_aligned_in_time_by_correlation(run: xr.Dataset) -> None:
 
 
 def test_lines_of_the_mesh_are_found_in_a_sound(run: xr.Dataset) -> None:
-    """Lines 1 to 5 within 0.1 % of where they were put, 1.5 % off the drive; amplitudes: nothing."""
+    """Lines 1 to 5 within 0.1 % of where they were put, 1.5 % off the drive; no amplitude."""
     rate, mesh = 20000, 95.0 * 1.015
     time = np.arange(5 * rate) / rate
     sound = np.random.default_rng(5).standard_normal(time.size) * 0.2

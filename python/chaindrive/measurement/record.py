@@ -110,7 +110,7 @@ def measured(
     >>> import numpy as np
     >>> import pandas as pd
     >>> time = np.arange(2000) / 1000.0
-    >>> torque = 0.05 * np.sin(2 * np.pi * 7.3 * time) + 1.2
+    >>> torque = 0.05 * np.sin(2 * np.pi * 7.0 * time) + 1.2
     >>> table = pd.DataFrame({"time [ms]": 1e3 * time, "flange [kN m]": torque})
     >>> data = cd.measured(table, turns={"driver": "300 rpm"})
     >>> data["flange"].attrs["units"], round(float(data["flange"].mean()), 1)
