@@ -15,7 +15,7 @@ from chaindrive.analysis.parts import sprockets
 from chaindrive.analysis.signal import turning
 from chaindrive.drive import Drive, _needed
 from chaindrive.errors import MeasurementError
-from chaindrive.measurement.comparison import correspondence, reference_shaft
+from chaindrive.measurement.correspondence import correspondence, reference_shaft
 from chaindrive.measurement.faults import too_slow
 from chaindrive.measurement.features import readings
 from chaindrive.measurement.free import free_parameters, open_to

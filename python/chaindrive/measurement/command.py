@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import sys
 import tomllib
 import warnings
 from collections.abc import Mapping
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -63,9 +65,12 @@ def command(verb: str, options: Mapping[str, Any]) -> int:
     except (ChaindriveError, ValueError, OSError, ModuleNotFoundError) as error:
         return _refused(options, error, _BAD_INPUT)
     if options["json"]:
-        print(_core.plain_json(json.dumps(_plain(answer), indent=2, ensure_ascii=False)))
-    else:
-        print(page)
+        page = _core.plain_json(json.dumps(_plain(answer), indent=2, ensure_ascii=False))
+    try:
+        print(page, flush=True)
+    except BrokenPipeError:
+        # Who reads no further is no failure; Python would complain when it ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return 0
 
 
@@ -136,9 +141,10 @@ def _number(text: str) -> Any:
 
 def _check(options: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
     data = _record(options)
-    found = check_data(
-        _drive(options["source"]), data, _free(options["free"]), progress=not options["json"]
-    )
+    # A bar is shown where somebody can see it, and its package is there.
+    seen = sys.stderr.isatty() and find_spec("tqdm") is not None
+    drive = _drive(options["source"])
+    found = check_data(drive, data, _free(options["free"]), progress=seen)
     answer: dict[str, Any] = {
         "measured_from": data.attrs["measured_from"],
         "findings": list(data.attrs["findings"]),

@@ -16,8 +16,9 @@ from chaindrive.errors import MeasurementError
 from chaindrive.measurement.alignment import Aligned, in_angle, in_time
 from chaindrive.measurement.bands import Band, Judgement, band_of, judged, numerical_error
 from chaindrive.measurement.blocks import Blocks, blocks_of, shared_length
+from chaindrive.measurement.correspondence import correspondence, reference_shaft
 from chaindrive.measurement.lines import Line, mesh_lines
-from chaindrive.measurement.quantities import MeasuredQuantity, guessed, quantity_of
+from chaindrive.measurement.quantities import MeasuredQuantity
 from chaindrive.measurement.series import (
     Series,
     channel_names,
@@ -27,7 +28,7 @@ from chaindrive.measurement.series import (
 )
 from chaindrive.measurement.telling import told_comparison
 
-__all__ = ["compare", "correspondence", "reference_shaft"]
+__all__ = ["compare"]
 
 #: Statistics that are compared of every quantity.
 STATISTICS = ("mean", "std", "p1", "p99")
@@ -173,37 +174,6 @@ def _check(run: xr.Dataset, level: float, telling: float) -> None:
     for name, value in (("level", level), ("telling", telling)):
         if not 0.0 < value < 1.0:
             raise MeasurementError(f"{name} = {value}, must be in (0, 1)", name)
-
-
-def correspondence(data: xr.Dataset, run: xr.Dataset) -> dict[str, MeasuredQuantity]:
-    """Return the quantity of every channel that has one: as said, or guessed by its name."""
-    found = {}
-    for name in channel_names(data):
-        sensor = sensor_of(data, name)
-        if sensor.quantity is not None:
-            found[name] = quantity_of(sensor.quantity)
-            continue
-        guess = guessed(name, str(data[name].attrs["units"]), run)
-        if guess is not None:
-            found[name] = guess
-    return found
-
-
-def reference_shaft(run: xr.Dataset, data: xr.Dataset) -> str | None:
-    """Return the first shaft of which the measurement knows the angle, and the run has one."""
-    if "sprocket_angle" not in data:
-        return None
-    known = [str(it) for it in data["sprocket"].to_numpy()]
-    ours = [
-        str(it) for dim in ("sprocket", "shaft") if dim in run.coords for it in run[dim].to_numpy()
-    ]
-    for name in known:
-        if name in ours:
-            return name
-    message = (
-        f"the measurement knows how {', '.join(known)} turns, and the drive has {', '.join(ours)}"
-    )
-    raise MeasurementError(message, "turns", "name a sprocket or shaft of the drive")
 
 
 def _compared(

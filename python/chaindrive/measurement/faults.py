@@ -38,6 +38,9 @@ def faults_of(values: _Floats, name: str, full_scale: float | None = None) -> li
     if np.unique(good[: 1 << 16]).size < _LEVELS:
         return found
     for bound, word in ((float(good.max()), "greatest"), (float(good.min()), "least")):
+        if bound == 0.0:
+            # What stands at rest reads nothing.
+            continue
         long = (good[starts] == bound) & (lengths >= _AT_BOUND)
         count = int(lengths[long].sum())
         at_scale = full_scale is not None and abs(bound) >= full_scale * (1.0 - 1e-4)
@@ -58,11 +61,15 @@ def faults_of(values: _Floats, name: str, full_scale: float | None = None) -> li
     if stuck.any():
         worst = int(np.flatnonzero(stuck)[np.argmax(lengths[stuck])])
         text = (
-            f"stands still {np.count_nonzero(stuck)} times, the longest for {lengths[worst]} "
+            f"stands still {_times(np.count_nonzero(stuck))} for {lengths[worst]} "
             f"samples at {good[starts[worst]]:.6g}, from sample {starts[worst]} on"
         )
         found.append(Finding("dropout", name, text))
     return found
+
+
+def _times(count: int) -> str:
+    return "once," if count == 1 else f"{count} times, the longest"
 
 
 def _stands(values: _Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

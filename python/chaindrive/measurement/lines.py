@@ -25,6 +25,8 @@ _MULTIPLES = 5
 #: How far from the mesh of the run a line is looked for, as a share of it: slip of a motor
 #: (assumed).
 _NEAR = 0.06
+#: Surroundings of a line, as a share of its frequency to either side (assumed).
+_AROUND = 0.2
 #: Height over the median of its surroundings from which a line is one [–] (assumed).
 _STANDS_OUT = 4.0
 
@@ -44,8 +46,9 @@ class Line(NamedTuple):
 def mesh_lines(series: Series, run: xr.Dataset, shaft: str | None) -> list[Line]:
     """Return the lines of the mesh in a signal, near those of a run.
 
-    The mesh frequency ``f = z Ω / 2π`` is that of the run. The first line that stands out is looked
-    for within 6 % of it; the others at multiples of what was found, to a hundredth of it.
+    The mesh frequency ``f = z Ω / 2π`` is that of the run. Its comb is looked for within 6 % of it:
+    where the lines at f, 2 f … 5 f together stand highest out of what is around them,
+    ``max Σ ln A(k f)/Ã(k f)``. A line that does not stand out by itself is not a number.
     """
     wheel = sprockets(run)[shaft if shaft in sprockets(run) else driver_of(run)]
     angle, _ = turning(run, wheel.name)
@@ -59,28 +62,40 @@ def mesh_lines(series: Series, run: xr.Dataset, shaft: str | None) -> list[Line]
         spread = spectrum(xr.Dataset(), values)
     except ChaindriveError:
         return []
-    lines: list[Line] = []
-    base, near = mesh, _NEAR
-    for multiple in range(1, _MULTIPLES + 1):
-        found, height = _line(spread, multiple * base, near * base * (1 if lines else multiple))
-        if np.isfinite(found) and near == _NEAR:
-            base, near = found / multiple, 0.01
-        lines.append(Line(multiple, found, multiple * mesh, height))
-    return lines
+    base = _comb(spread, mesh)
+    found = [_line(spread, multiple * base) for multiple in range(1, _MULTIPLES + 1)]
+    return [
+        Line(multiple, place, multiple * mesh, height)
+        for multiple, (place, height) in enumerate(found, 1)
+    ]
 
 
-def _line(spread: xr.DataArray, at: float, reach: float) -> tuple[float, float]:
-    """Return the place of the highest line near a frequency [Hz] and how far it stands out."""
+def _comb(spread: xr.DataArray, mesh: float) -> float:
+    """Return the frequency near that of the mesh whose multiples stand highest together [Hz]."""
     resolution = float(spread.attrs["resolution"])
-    reach = max(reach, 3.0 * resolution)
+    frequency, height = spread["frequency"].to_numpy(), spread.to_numpy()
+    held = [k for k in range(1, _MULTIPLES + 1) if k * mesh * (1 + _NEAR) < frequency[-1]]
+    tried = np.arange((1 - _NEAR) * mesh, (1 + _NEAR) * mesh, 0.2 * resolution / _MULTIPLES)
+    score = np.zeros(tried.size)
+    for multiple in held:
+        reach = max(_AROUND * multiple * mesh, 10.0 * resolution)
+        near = np.abs(frequency - multiple * mesh) < reach
+        around = max(float(np.median(height[near])), 1e-300)
+        score += np.log(np.interp(multiple * tried, frequency, height) / around + 1e-12)
+    return float(tried[int(np.argmax(score))])
+
+
+def _line(spread: xr.DataArray, at: float) -> tuple[float, float]:
+    """Return the place of the line at a frequency [Hz], and how far it stands out [–]."""
+    resolution = float(spread.attrs["resolution"])
+    reach = 3.0 * resolution
     part = spread.sel(frequency=slice(at - reach, at + reach))
-    around = spread.sel(frequency=slice(at - 10.0 * reach, at + 10.0 * reach))
-    if part.size < 3 or at + reach > float(spread["frequency"][-1]):
+    wide = max(_AROUND * at, 10.0 * resolution)
+    around = spread.sel(frequency=slice(at - wide, at + wide))
+    if part.size < 5 or at + reach > float(spread["frequency"][-1]):
         return np.nan, 0.0
     height = float(part.max()) / max(float(around.median()), 1e-300)
-    if height < _STANDS_OUT:
-        return np.nan, height
     tops = peaks(part, count=1)
-    if tops.sizes["peak"] == 0:
+    if height < _STANDS_OUT or tops.sizes["peak"] == 0:
         return np.nan, height
     return float(tops["frequency"][0]), height

@@ -29,7 +29,10 @@ _Floats = NDArray[np.float64]
 
 #: Attribute ``format`` of a measurement.
 FORMAT = "chaindrive measurement"
-_TIMES = ("time", "t", "zeit", "temps", "timestamp", "timestamps", "date", "datetime", "clock")
+_TIMES = (
+    *("time", "t", "zeit", "temps", "timestamp", "timestamps", "date", "datetime", "clock"),
+    *("sec", "secs", "second", "seconds"),
+)
 #: Findings that are no faults.
 _HARMLESS = ("text",)
 
@@ -197,7 +200,7 @@ def _timed(
                 f"{channel.name} has no time beside it, and no channel is called time: "
                 f"there are {names}",
                 channel.name,
-                "give time='…', the channel that is the time, or rate='1 kHz'",
+                _suggested(raw),
             )
         if times.size != channel.values.size:
             message = f"{channel.name} has {channel.values.size} samples, and its time {times.size}"
@@ -206,6 +209,15 @@ def _timed(
     if not found:
         raise MeasurementError("there is a time, and no channel beside it", "channels")
     return found
+
+
+def _suggested(raw: RawRecord) -> str:
+    """Return what to give for a time: the first channel that rises evenly, if there is one."""
+    for it in raw.channels:
+        steps = np.diff(it.values)
+        if steps.size and steps.min() > 0.0 and np.ptp(steps) < 1e-2 * steps.mean():
+            return f"give time={it.name!r}, which rises evenly, or rate='1 kHz'"
+    return "give time='…', the channel that is the time, or rate='1 kHz'"
 
 
 def _seconds(clock: RawChannel) -> _Floats:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,11 @@ __all__ = ["read"]
 
 def read(path: Path) -> RawRecord:
     """Read a WAV file; its channels are in fractions of the full scale."""
-    rate, data = extra("scipy.io.wavfile", "measurements in WAV").read(path)
+    wavfile = extra("scipy.io.wavfile", "measurements in WAV")
+    with warnings.catch_warnings():
+        # Recorders put remarks of their own beside the samples.
+        warnings.simplefilter("ignore", wavfile.WavFileWarning)
+        rate, data = wavfile.read(path)
     columns = data.reshape(len(data), -1).T
     time = np.arange(len(data)) / float(rate)
     channels = []
