@@ -28,7 +28,7 @@ FLANGE = cd.measurement.Sensor(quantity="sprocket_torque[driver]", gain_uncertai
 @pytest.fixture(scope="module")
 def run() -> xr.Dataset:
     drive = cd.scenes.industrial_16b()
-    return cd.simulate(drive, until=0.4, every=5e-5, record=CHANNELS)
+    return cd.simulate(drive, until=0.3, every=5e-5, record=CHANNELS)
 
 
 @pytest.fixture(scope="module")
@@ -289,7 +289,7 @@ def test_slips_of_unit_and_sign_are_named(table: pd.DataFrame) -> None:
     assert "less than twice the 95 Hz of the mesh of driver" in told.attrs["summary"]
 
 
-def test_a_comparison_is_drawn_and_reported(run: xr.Dataset, table: pd.DataFrame) -> None:
+def test_a_comparison_is_drawn(run: xr.Dataset, table: pd.DataFrame) -> None:
     found = cd.compare(run, read(table))
     figure = cd.plot.comparison(found, "sprocket_torque[driver]")
     titles = [ax.get_xlabel() for ax in figure.axes]
@@ -301,6 +301,11 @@ def test_a_comparison_is_drawn_and_reported(run: xr.Dataset, table: pd.DataFrame
     plt.close(figure)
     with pytest.raises(cd.ParameterError, match="this is no comparison"):
         cd.plot.overlay(run)
+
+
+@pytest.mark.slow
+def test_a_report_has_the_comparison(run: xr.Dataset, table: pd.DataFrame) -> None:
+    found = cd.compare(run, read(table))
     page = cd.report(run, comparison=found)
     assert "Against the measurement" in page
     assert page.count("span_tension[driven-driver]: differences over their bands") == 2

@@ -61,7 +61,7 @@ def faults_of(values: _Floats, name: str, full_scale: float | None = None) -> li
     if stuck.any():
         worst = int(np.flatnonzero(stuck)[np.argmax(lengths[stuck])])
         text = (
-            f"stands still {_times(np.count_nonzero(stuck))} for {lengths[worst]} "
+            f"stands still {_times(int(stuck.sum()))} for {lengths[worst]} "
             f"samples at {good[starts[worst]]:.6g}, from sample {starts[worst]} on"
         )
         found.append(Finding("dropout", name, text))

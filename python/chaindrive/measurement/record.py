@@ -136,9 +136,9 @@ def measured(
         channel = raw.named(name)
         base, kept = of[channel.name]
         values, about = _in_si(channel, sensor, kept)
-        told = any(it.kind == "not-a-number" and it.channel == name for it in findings)
+        is_told = any(it.kind == "not-a-number" and it.channel == name for it in findings)
         faults = faults_of(channel.values[kept], name, channel.full_scale)
-        findings += [it for it in faults if not (told and "no value" in it.text)]
+        findings += [it for it in faults if not (is_told and "no value" in it.text)]
         about["sampling_rate"] = sampling_rate(bases[base])
         key = name.replace("/", " ")
         variables[key] = labelled((base,), values, about)
