@@ -140,7 +140,7 @@ def measured(
         faults = faults_of(channel.values[kept], name, channel.full_scale)
         findings += [it for it in faults if not (is_told and "no value" in it.text)]
         about["sampling_rate"] = sampling_rate(bases[base])
-        key = name.replace("/", " ")
+        key = _core.one_line(name).replace("/", " ")
         variables[key] = labelled((base,), values, about)
         if about["units"] and not unit_of(about["units"]).is_known:
             text = f"its unit {about['units']!r} is none of a drive; give `scale` and `unit`"
