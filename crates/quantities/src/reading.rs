@@ -86,7 +86,9 @@ pub fn read_unit(text: &str) -> Result<UnitInSi, Complaint> {
                 message: format!("no quantity of a drive is {}", name_of(powers)),
                 hint: "write a unit such as \"kN m\", \"rpm\" or \"bar\"".into(),
             },
-            Err(_) => in_unit("m").read(&format!("1 {text}"), None).unwrap_err(),
+            Err(_) => in_unit("m")
+                .read(&format!("1 {text}"), None)
+                .expect_err("no quantity has this unit, and a length neither"),
         });
     };
     let zero = dimension.read(&format!("0 {text}"), None)?;
