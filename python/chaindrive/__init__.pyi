@@ -5,6 +5,7 @@ from chaindrive import design as design
 from chaindrive import errors as errors
 from chaindrive import exchange as exchange
 from chaindrive import kinematics as kinematics
+from chaindrive import measurement as measurement
 from chaindrive import plot as plot
 from chaindrive import scenes as scenes
 from chaindrive import settings as settings
@@ -29,6 +30,8 @@ from chaindrive.errors import ChaindriveError as ChaindriveError
 from chaindrive.errors import ClashWarning as ClashWarning
 from chaindrive.errors import DistrustedResultWarning as DistrustedResultWarning
 from chaindrive.errors import IntegrationError as IntegrationError
+from chaindrive.errors import MeasurementError as MeasurementError
+from chaindrive.errors import MeasurementWarning as MeasurementWarning
 from chaindrive.errors import ParameterError as ParameterError
 from chaindrive.errors import ProgramError as ProgramError
 from chaindrive.errors import ResultWarning as ResultWarning
@@ -44,6 +47,9 @@ from chaindrive.live import Simulation as Simulation
 from chaindrive.live import Snapshot as Snapshot
 from chaindrive.live import View as View
 from chaindrive.live import step_many as step_many
+from chaindrive.measurement.checking import check_data as check_data
+from chaindrive.measurement.comparison import compare as compare
+from chaindrive.measurement.record import measured as measured
 from chaindrive.page import Page as Page
 from chaindrive.precision import work_precision as work_precision
 from chaindrive.profile import Profile as Profile

@@ -88,6 +88,13 @@ def main() -> int:
             from chaindrive.fmu import LIBRARY
 
             arguments += ["--library", str(LIBRARY)]
+        asked = _core._of_measurement(arguments)
+        if asked is not None:
+            import json
+
+            from chaindrive.measurement.command import command
+
+            return _end(command(asked[0], json.loads(asked[1])))
         drawn = _core._drawn(arguments)
         return _end(_run(arguments) if drawn is None else _draw(arguments, *drawn))
     except KeyboardInterrupt:

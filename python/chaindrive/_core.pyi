@@ -29,6 +29,7 @@ __all__ = [
     "__version__",
     "_cli",
     "_drawn",
+    "_of_measurement",
     "_origin",
     "_panic",
     "adaptive_methods",
@@ -59,6 +60,7 @@ __all__ = [
     "simulate",
     "step_many",
     "take_over",
+    "unit",
     "work_precision",
 ]
 
@@ -337,6 +339,8 @@ def _panic(elsewhere: bool) -> None: ...
 def _drawn(
     arguments: list[str],
 ) -> tuple[str, str, int | None, bool, bool] | None: ...
+def _of_measurement(arguments: list[str]) -> tuple[str, str] | None: ...
+def unit(text: str) -> tuple[float, float, str, str]: ...
 def layouts_of(drive: Drive) -> tuple[str, list[str]]: ...
 def layout_around(
     stops: Sequence[object],

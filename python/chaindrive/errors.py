@@ -29,6 +29,8 @@ __all__ = [
     "ClashWarning",
     "DistrustedResultWarning",
     "IntegrationError",
+    "MeasurementError",
+    "MeasurementWarning",
     "ParameterError",
     "Problem",
     "ProgramError",
@@ -142,6 +144,14 @@ class ResumeError(ChaindriveError, ValueError):
         super().__init__(message, None if path is None else str(path), hint)
 
 
+class MeasurementError(ChaindriveError, ValueError):
+    """A measurement cannot be read or used; `path` is its file, channel or argument."""
+
+    def __init__(self, message: str, path: object = None, hint: str | None = None) -> None:
+        told = message if hint is None else f"{message}; {hint}"
+        super().__init__(told, None if path is None else str(path), hint)
+
+
 def warn(message: str, category: type[Warning]) -> None:
     """Warn at the line outside of this package from which it was called, however deep it is."""
     frame, level = sys._getframe(), 1
@@ -157,6 +167,10 @@ def tell(message: object) -> None:
 
 class ResultWarning(UserWarning):
     """A result is less than it was meant to be."""
+
+
+class MeasurementWarning(UserWarning):
+    """A measurement has faults: its attribute ``findings`` names them."""
 
 
 class ClashWarning(UserWarning):

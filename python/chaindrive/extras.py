@@ -9,6 +9,7 @@ __all__ = ["extra"]
 
 # The extra that brings each package; pyproject.toml says in which version.
 _BRINGS = {
+    "asammdf": "measured-mdf",
     "dask": "dask",
     "distributed": "dask",
     "ezdxf": "dxf",
@@ -17,6 +18,7 @@ _BRINGS = {
     "imageio": "movie",
     "imageio_ffmpeg": "movie",
     "matplotlib": "plot",
+    "nptdms": "measured-tdms",
     "obstore": "object-store",
     "pyarrow": "parquet",
     "scipy": "analysis",

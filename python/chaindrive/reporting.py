@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import io
+import json
 import re
 from base64 import b64encode
 from collections.abc import Callable, Iterator
@@ -26,7 +27,7 @@ from chaindrive.simulation import simulate
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["report"]
+__all__ = ["named", "report"]
 
 #: Frames of the replay in a report: half of its size, and enough for two turns of a sprocket.
 _FRAMES = 400
@@ -36,7 +37,10 @@ _DOTS = 110
 
 
 def report(
-    source: Drive | xr.Dataset | str | PathLike[str], path: str | PathLike[str] | None = None
+    source: Drive | xr.Dataset | str | PathLike[str],
+    path: str | PathLike[str] | None = None,
+    *,
+    comparison: xr.Dataset | None = None,
 ) -> str:
     """Make the report of a run: one HTML file that needs nothing else, and prints well.
 
@@ -51,6 +55,8 @@ def report(
         and all channels; or the store of a result.
     path
         Where to write, in place of what was there; absent: nowhere.
+    comparison
+        What `compare` returned of this run and a measurement: a section of the report.
 
     Returns
     -------
@@ -67,16 +73,18 @@ def report(
         The file cannot be written; what was in its place is still there.
     """
     place = None if path is None else NewFile(path)
-    text = _report(source)
+    text = _report(source, comparison)
     if place is not None:
         place.write(text.encode())
     return text
 
 
-def _report(source: Drive | xr.Dataset | str | PathLike[str]) -> str:
+def _report(
+    source: Drive | xr.Dataset | str | PathLike[str], comparison: xr.Dataset | None = None
+) -> str:
     # Missed before anything is simulated.
     extra("matplotlib.pyplot", "plots")
-    return _document(_run(source))
+    return _document(_run(source), comparison)
 
 
 def _run(source: Drive | xr.Dataset | str | PathLike[str]) -> xr.Dataset:
@@ -92,7 +100,7 @@ def _run(source: Drive | xr.Dataset | str | PathLike[str]) -> xr.Dataset:
     return simulate(source, record="all", events=["teeth"])
 
 
-def _document(run: xr.Dataset) -> str:
+def _document(run: xr.Dataset, comparison: xr.Dataset | None) -> str:
     about = run.attrs
     told = page_of(run)
     title = str(about.get("title") or about.get("scene_name") or "chain drive")
@@ -103,6 +111,7 @@ def _document(run: xr.Dataset) -> str:
         section(verdict, level=2),
         _picture("The drive at the start", lambda ax: _layout(run, ax)),
         *(section(it, level=2) for it in sections),
+        *_compared(comparison),
         "<h2>Diagrams</h2>",
         *(_picture(name, draw) for name, draw in _diagrams(run)),
         "<h2>Inputs and their sources</h2>",
@@ -128,6 +137,27 @@ def _document(run: xr.Dataset) -> str:
         f"<title>{escaped(title)}</title>\n<style>\n{style}</style>\n</head>\n"
         f"<body>\n<main>\n{body}\n</main>\n</body>\n</html>\n"
     )
+
+
+def _compared(found: xr.Dataset | None) -> Iterator[str]:
+    """Sections and diagrams of a comparison with a measurement; none without one."""
+    if found is None:
+        return
+    from chaindrive import plot
+
+    for told in json.loads(found.attrs["page"])["sections"]:
+        yield section(told, level=2)
+    for quantity in map(str, found["quantity"].to_numpy()):
+        for title, draw in (
+            ("over each other", plot.overlay),
+            ("differences over their bands", plot.differences),
+            ("orders", plot.compared_orders),
+            ("distribution", plot.distribution),
+        ):
+            yield _picture(
+                f"{quantity}: {title}",
+                lambda ax, draw=draw, it=quantity: draw(found, it, ax=ax),  # type: ignore[misc]
+            )
 
 
 def _layout(run: xr.Dataset, ax: Axes) -> None:
@@ -234,7 +264,7 @@ def command(source: str, output: Path, place: NewFile, *, quiet: bool) -> int:
         tell(f"{output}: the name must end in .html")
         return 2
     try:
-        text = _report(_named(source)).encode()
+        text = _report(named(source)).encode()
         place.write(text)
     except (ProgramError, WriteError):
         raise
@@ -246,7 +276,7 @@ def command(source: str, output: Path, place: NewFile, *, quiet: bool) -> int:
     return 0
 
 
-def _named(source: str) -> Drive | str:
+def named(source: str) -> Drive | str:
     """Return the drive of a preset, where no file has its name."""
     from chaindrive import scenes
 

@@ -25,6 +25,12 @@ SHORTER = {
     "replay.md": {"until=5e-3": "until=5e-3, run_in=0"},
     "spectra-and-modes.md": {"until=3": 'until=1.5, method="verlet"'},
     "sweeps.md": {'"10 ms"': '"0 s"', "-14.0, 20)": "-14.0, 4)", "== 20": "== 4"},
+    "measured.md": {
+        "until=0.4, every=2e-4": "until=0.25, every=2e-4",
+        "    until=0.2,\n": "    until=0.06,\n",
+        "until=0.4, every=5e-5": "until=0.25, every=5e-5",
+        'cd.report(run, "report.html", comparison=found)': "pass",
+    },
     "wear-and-fatigue.md": {"run_in=0.2, until=0.1": "run_in=0.05, until=0.1"},
 }
 BLOCK = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)

@@ -28,6 +28,10 @@ assert_type(cd.replay(run), cd.Replay)
 cd.replay(run, plot=["span_tension"]).save("run.html")
 assert_type(cd.load(run), cd.Drive)
 cd.friction("coulomb", coefficient=0.1, slip_speed="5 cm/s")
+flange = cd.measurement.Sensor("sprocket_torque[driver]", gain_uncertainty=0.002)
+data = cd.measured("rig.csv", channels={"flange": flange}, turns={"driver": "300 rpm"})
+assert_type(cd.compare(run, data), xr.Dataset)
+assert_type(cd.check_data(drive, data, free={"chain.stiffness": (1e8, "200 MN/m")}), xr.Dataset)
 
 cd.simulate(drive, method="euler")  # type: ignore[arg-type]
 cd.simulate(drive, record="span_tensions")  # type: ignore[arg-type]

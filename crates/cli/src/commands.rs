@@ -7,6 +7,7 @@ pub(crate) mod design;
 pub(crate) mod draw;
 pub(crate) mod fmu;
 pub(crate) mod lists;
+pub(crate) mod measurement;
 pub(crate) mod output;
 pub(crate) mod replay;
 pub(crate) mod report;

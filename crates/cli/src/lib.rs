@@ -29,14 +29,15 @@ use std::path::PathBuf;
 
 use chaindrive::caught;
 use clap::{CommandFactory, Parser, Subcommand};
+use serde_json::Value;
 
 use complaint::{Complaint, Trouble};
 use failure::Failure;
 use terminal::{say, tell};
 
 use commands::{
-    bench, check, describe, design, draw, fmu, lists, replay, report, resume, run as run_command,
-    scenes, schemas, shell, sweep,
+    bench, check, describe, design, draw, fmu, lists, measurement, replay, report, resume,
+    run as run_command, scenes, schemas, shell, sweep,
 };
 
 /// Exit code of a run that was stopped by Ctrl-C.
@@ -79,6 +80,8 @@ enum Verb {
     Resume(resume::Arguments),
     Replay(replay::Arguments),
     Report(report::Arguments),
+    CheckData(measurement::CheckData),
+    Compare(measurement::Compare),
     Sweep(sweep::Arguments),
     Bench(bench::Arguments),
     Check(check::Arguments),
@@ -121,6 +124,20 @@ where
         Verb::Replay(arguments) => arguments.movie(),
         Verb::Report(arguments) => Some(arguments.report()),
         Verb::Bench(arguments) => Some(arguments.diagram()),
+        _ => None,
+    }
+}
+
+/// What a command line asks of the Python package about a measurement: the verb, and its options by name; none if it asks for anything else,
+/// or is wrong: [`run`] tells then.
+pub fn of_measurement<A>(arguments: impl IntoIterator<Item = A>) -> Option<(&'static str, Value)>
+where
+    A: Into<OsString> + Clone,
+{
+    let parsed = caught(|| Command::try_parse_from(arguments).ok()).ok()??;
+    match parsed.verb? {
+        Verb::CheckData(arguments) => Some(("check-data", measurement::options(&arguments)?)),
+        Verb::Compare(arguments) => Some(("compare", measurement::options(&arguments)?)),
         _ => None,
     }
 }
@@ -186,6 +203,8 @@ fn carry_out(
         Verb::Resume(arguments) => resume::resume(arguments, interrupted),
         Verb::Replay(arguments) => replay::replay(arguments, interrupted),
         Verb::Report(arguments) => report::report(arguments),
+        Verb::CheckData(_) => Err(measurement::elsewhere("check-data")),
+        Verb::Compare(_) => Err(measurement::elsewhere("compare")),
         Verb::Sweep(arguments) => sweep::sweep(arguments, interrupted),
         Verb::Bench(arguments) => bench::bench(arguments, interrupted),
         Verb::Check(arguments) => check::check(arguments, interrupted),

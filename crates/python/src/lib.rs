@@ -25,6 +25,7 @@ mod replay;
 mod run;
 mod signals;
 mod sweep;
+mod unit;
 
 /// Blocks that begin where a cache line does: whole registers of states and contacts are then read at once, where the system's
 /// allocator leaves it to chance (up to a tenth of a step).
@@ -75,6 +76,8 @@ mod core {
 
     #[pymodule_export]
     use crate::sweep::{Sweep, SweepCoordinator, SweepWorker};
+    #[pymodule_export]
+    use crate::unit::unit;
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "the name that Python expects")]
@@ -110,6 +113,13 @@ mod core {
             it.overwrite,
             it.quiet,
         ))
+    }
+
+    /// Verb and options, as JSON, of what a command line asks about a measurement.
+    #[pyfunction]
+    fn _of_measurement(arguments: Vec<OsString>) -> Option<(&'static str, String)> {
+        let (verb, options) = chaindrive_cli::of_measurement(arguments)?;
+        Some((verb, options.to_string()))
     }
 
     /// Panics, so that tests see what becomes of it: here, or in a thread that the caller waits for.

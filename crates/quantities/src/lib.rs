@@ -29,7 +29,9 @@ mod unit;
 pub use library::{Handle, Library, RegistrationError};
 pub use quantity::*;
 pub use range::{ParameterError, Range, check};
-pub use reading::{CONTACT_STIFFNESS, Complaint, is_number, read_length, read_time};
+pub use reading::{
+    CONTACT_STIFFNESS, Complaint, UnitInSi, is_number, read_length, read_time, read_unit,
+};
 pub use schemars::JsonSchema;
 
 /// Hash of the sources of this crate, a part of the identity of a build.

@@ -51,6 +51,56 @@ pub fn read_length(text: &str) -> Result<f64, String> {
     read.map_err(|complaint| format!("{}; {}", complaint.message, complaint.hint))
 }
 
+/// A unit in SI: x of it are `factor` x + `zero` of [`unit`](Self::unit).
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnitInSi {
+    /// Units of SI that one is.
+    pub factor: f64,
+    /// Zero of its scale, in units of SI: other than 0 for degrees Celsius only.
+    pub zero: f64,
+    /// Unit of SI.
+    pub unit: &'static str,
+    /// Quantity that it measures, with its article.
+    pub quantity: &'static str,
+}
+
+/// A unit by itself, as the heading of a column has it, such as `"kN m"`; without one a pure number.
+///
+/// # Errors
+/// The mistake in the text, or that no quantity has such a unit.
+pub fn read_unit(text: &str) -> Result<UnitInSi, Complaint> {
+    let exact = unit::parse(text).map(|unit| unit.powers);
+    let fits = |it: &&Dimension| {
+        it.name != CONTACT_STIFFNESS && it.read(&format!("1 {text}"), None).is_ok()
+    };
+    let known = || DIMENSIONS.iter().filter(fits);
+    // A torque without its radian is a spring that turns, too.
+    let same = |it: &&Dimension| {
+        exact
+            .as_ref()
+            .is_ok_and(|powers| powers.matches(Powers(it.powers)))
+    };
+    let Some(dimension) = known().find(same).or_else(|| known().next()) else {
+        return Err(match exact {
+            Ok(powers) => Complaint {
+                message: format!("no quantity of a drive is {}", name_of(powers)),
+                hint: "write a unit such as \"kN m\", \"rpm\" or \"bar\"".into(),
+            },
+            Err(_) => in_unit("m")
+                .read(&format!("1 {text}"), None)
+                .expect_err("no quantity has this unit, and a length neither"),
+        });
+    };
+    let zero = dimension.read(&format!("0 {text}"), None)?;
+    let one = dimension.read(&format!("1 {text}"), None)?;
+    Ok(UnitInSi {
+        factor: one - zero,
+        zero,
+        unit: dimension.unit,
+        quantity: dimension.name,
+    })
+}
+
 /// Whether a text is a number, with a unit that a scene knows or without.
 pub fn is_number(text: &str) -> bool {
     let text = text.trim();
@@ -469,6 +519,33 @@ mod tests {
             assert!(complaint.message.contains(message), "{complaint:?}");
             assert!(complaint.hint.contains(hint), "{complaint:?}");
         }
+    }
+
+    #[test]
+    fn units_of_columns_are_read_alone() {
+        for (text, factor, zero, si) in [
+            ("kN", 1e3, 0.0, "N"),
+            ("Nm", 1.0, 0.0, "N m"),
+            ("N m/rad", 1.0, 0.0, "N m/rad"),
+            ("bar", 1e5, 0.0, "Pa"),
+            ("1/min", 1.0 / 60.0, 0.0, "Hz"),
+            ("%", 0.01, 0.0, "1"),
+            ("", 1.0, 0.0, "1"),
+            ("mm/s^2", 1e-3, 0.0, "m/s^2"),
+        ] {
+            let found = read_unit(text).unwrap();
+            assert_eq!(
+                (found.factor, found.zero, found.unit),
+                (factor, zero, si),
+                "{text}"
+            );
+        }
+        let celsius = read_unit("degC").unwrap();
+        assert_eq!((celsius.zero, celsius.unit), (273.15, "K"));
+        assert!((celsius.factor - 1.0).abs() < 1e-12);
+        let message = |text| read_unit(text).unwrap_err().message;
+        assert!(message("furlong").contains("unknown unit `furlong`"));
+        assert!(message("N/K").contains("no quantity of a drive is"));
     }
 
     #[test]

@@ -66,7 +66,7 @@ def order_map(
     """
     values = _single(signal(run, channel, at))
     angle, _ = turning(run, shaft)
-    revolution, even, density = _over_angle(values, angle)
+    revolution, even, density = over_angle(values, angle)
     size = round(turns * density)
     if size > even.size or size < 8:
         raise ParameterError(
@@ -301,19 +301,35 @@ def _single(values: xr.DataArray) -> xr.DataArray:
     return values
 
 
-def _over_angle(
-    values: xr.DataArray, angle: NDArray[np.float64]
+def over_angle(
+    values: xr.DataArray, angle: NDArray[np.float64], density: float | None = None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
-    """Return revolutions at equal steps, the signal there, and the samples a revolution."""
+    """Return revolutions at equal steps, the signal there, and the samples a revolution.
+
+    Parameters
+    ----------
+    values : (time,)
+        The signal.
+    angle : (time,)
+        Angle of the shaft [rad], from zero on.
+    density
+        Samples a revolution; as many as the signal has where the shaft turns slowest when absent.
+
+    Raises
+    ------
+    ParameterError
+        The shaft stands or goes back.
+    """
     cubic = extra("scipy.interpolate", "order maps").CubicSpline
     steps = np.diff(angle)
     if (steps <= 0.0).any():
         raise ParameterError(
             "the shaft stands or goes back: orders need one that turns on", "shaft"
         )
-    density = float(np.ceil(2 * np.pi / steps.min()))
-    # Twenty times the samples at mean speed are enough for any run-up, and fit into memory.
-    density = min(density, np.ceil(20.0 * angle.size * 2 * np.pi / angle[-1]))
+    if density is None:
+        density = float(np.ceil(2 * np.pi / steps.min()))
+        # Twenty times the samples at mean speed are enough for any run-up, and fit into memory.
+        density = min(density, np.ceil(20.0 * angle.size * 2 * np.pi / angle[-1]))
     revolution = np.arange(0.0, angle[-1] / (2 * np.pi), 1.0 / density)
     return revolution, cubic(angle / (2 * np.pi), values.to_numpy())(revolution), density
 

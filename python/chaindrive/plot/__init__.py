@@ -11,6 +11,13 @@ from __future__ import annotations
 
 from chaindrive.plot.curves import tension, work_precision
 from chaindrive.plot.drive import frame, layout, svg
+from chaindrive.plot.measured import (
+    compared_orders,
+    comparison,
+    differences,
+    distribution,
+    overlay,
+)
 from chaindrive.plot.panels import overview
 from chaindrive.plot.scheme import STYLE
 from chaindrive.plot.spectra import (
@@ -39,6 +46,10 @@ from chaindrive.plot.wear import (
 __all__ = [
     "STYLE",
     "campbell",
+    "compared_orders",
+    "comparison",
+    "differences",
+    "distribution",
     "elongation",
     "frame",
     "impacts",
@@ -47,6 +58,7 @@ __all__ = [
     "losses",
     "order_map",
     "order_slice",
+    "overlay",
     "overview",
     "rainflow",
     "response",

@@ -130,6 +130,7 @@ const CRATES: [Storeys; 6] = [
                 "law",
                 "new_file",
                 "signals",
+                "unit",
             ],
             &["friction", "profile"],
             &["drive"],

@@ -1,0 +1,53 @@
+"""Parquet, and tables of pandas."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from chaindrive.extras import extra
+from chaindrive.measurement.raw import RawChannel, RawRecord, numbers
+from chaindrive.measurement.units import named_unit
+
+__all__ = ["read", "read_frame"]
+
+
+def read(path: Path) -> RawRecord:
+    """Read a table in Parquet; units stand in headings, or in the metadata of columns."""
+    parquet = extra("pyarrow.parquet", "tables in Parquet")
+    table = parquet.read_table(path)
+    units = {}
+    for field in table.schema:
+        about = {key.decode(): text.decode() for key, text in (field.metadata or {}).items()}
+        units[field.name] = about.get("units") or about.get("unit")
+    return read_frame(table.to_pandas(), units)
+
+
+def read_frame(frame: Any, units: Mapping[str, str | None] | None = None) -> RawRecord:
+    """Read a DataFrame: a column a channel, its index the time where it is one."""
+    stated = {**frame.attrs.get("units", {}), **(units or {})}
+    columns = {str(name): frame[name] for name in frame.columns}
+    index = frame.index
+    if isinstance(index, pd.DatetimeIndex | pd.TimedeltaIndex) or index.name is not None:
+        columns = {str(index.name or "time"): index.to_series()} | columns
+    channels, notes = [], []
+    for heading, column in columns.items():
+        name, unit = named_unit(heading)
+        unit = stated.get(heading) or unit
+        if column.dtype.kind in "mM":
+            first = column.dropna().iloc[0] if column.dtype.kind == "M" else pd.Timedelta(0)
+            seconds = (column - first).dt.total_seconds().to_numpy(dtype=np.float64)
+            channels.append(RawChannel(name, "s", seconds))
+            continue
+        values, wrong = numbers(column.to_numpy())
+        if values is None:
+            notes.append(("text", name, "holds texts, and is left out"))
+            continue
+        if wrong:
+            notes.append(("not-a-number", name, f"{wrong} cells are no numbers"))
+        channels.append(RawChannel(name, unit, values))
+    return RawRecord(channels, notes)

@@ -1,0 +1,74 @@
+"""Channels as they stand in a file, before anything is done to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chaindrive.errors import MeasurementError
+
+__all__ = ["RawChannel", "RawRecord", "numbers"]
+
+_Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RawChannel:
+    """One channel of a file."""
+
+    name: str
+    """Its name, without its unit."""
+    unit: str | None
+    """Its unit as the file has it; None where it has none."""
+    values: _Floats
+    """Readings (samples,), NaN where there is none."""
+    time: _Floats | None = None
+    """Times of its samples [s] (samples,); None where the file tells none beside it."""
+    full_scale: float | None = None
+    """Greatest reading that its converter knows, where the file tells."""
+
+
+@dataclass(frozen=True)
+class RawRecord:
+    """All channels of a file."""
+
+    channels: list[RawChannel]
+    notes: list[tuple[str, str, str]] = field(default_factory=list)
+    """What was noticed: name of the finding, channel, sentence."""
+
+    def named(self, name: str) -> RawChannel:
+        """Return the channel of a name, whatever its case.
+
+        Raises
+        ------
+        MeasurementError
+            There is none; the message lists those that there are.
+        """
+        exact = [it for it in self.channels if it.name == name]
+        near = exact or [it for it in self.channels if it.name.casefold() == name.casefold()]
+        if len(near) == 1:
+            return near[0]
+        known = ", ".join(repr(it.name) for it in self.channels[:24])
+        how = "several channels are" if near else "no channel is"
+        raise MeasurementError(f"{how} named {name!r}: there are {known}", name)
+
+
+def numbers(values: object) -> tuple[_Floats | None, int]:
+    """Return values as numbers, NaN where they are none, and how many texts are no numbers.
+
+    None stands for a column of texts: at most half of its entries are numbers.
+    """
+    array = np.asarray(values)
+    if array.dtype.kind in "biuf":
+        return array.astype(np.float64), 0
+    import pandas as pd
+
+    given = pd.Series(array)
+    found = pd.to_numeric(given, errors="coerce").to_numpy(dtype=np.float64)
+    stated = given.notna().to_numpy() & (given.astype(str).str.strip() != "").to_numpy()
+    wrong = int(np.count_nonzero(stated & np.isnan(found)))
+    if 2 * int(np.isfinite(found).sum()) <= max(int(stated.sum()), 1):
+        return None, wrong
+    return found, wrong

@@ -1,0 +1,371 @@
+"""A measurement as one labelled dataset: names, units, signs, times, angles, and its faults."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from os import PathLike
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from chaindrive import _core
+from chaindrive.errors import MeasurementError, MeasurementWarning, warn
+from chaindrive.labelled import indexed, labelled
+from chaindrive.measurement.amount import amount
+from chaindrive.measurement.faults import faults_of, too_slow
+from chaindrive.measurement.formats import read_raw
+from chaindrive.measurement.raw import RawChannel, RawRecord
+from chaindrive.measurement.sensor import Sensor
+from chaindrive.measurement.time_base import Finding, intervals, sampling_rate, sorted_in_time
+from chaindrive.measurement.turning import Turning, angle_by, turning_by
+from chaindrive.measurement.units import unit_of
+from chaindrive.settings import Quantity
+
+__all__ = ["FORMAT", "measured"]
+
+_Floats = NDArray[np.float64]
+
+#: Attribute ``format`` of a measurement.
+FORMAT = "chaindrive measurement"
+_TIMES = (
+    *("time", "t", "zeit", "temps", "timestamp", "timestamps", "date", "datetime", "clock"),
+    *("sec", "secs", "second", "seconds"),
+)
+#: Findings that are no faults.
+_HARMLESS = ("text",)
+
+
+def measured(
+    path: str | PathLike[str] | xr.Dataset | Any,
+    *,
+    channels: Mapping[str, Sensor | str | Mapping[str, Any]] | Iterable[str] | None = None,
+    turns: Mapping[str, Turning | str | float | Mapping[str, Any]] | None = None,
+    time: str | None = None,
+    rate: Quantity | None = None,
+    start: Quantity | None = None,
+    until: Quantity | None = None,
+    orders: Mapping[str, float] | None = None,
+    encoding: str | None = None,
+    decimal: str | None = None,
+    separator: str | None = None,
+) -> xr.Dataset:
+    """Read a measurement into one labelled dataset in SI units, and tell its faults.
+
+    Formats are known by the ending of the name: tables of text (``.csv``, ``.txt``, ``.tsv``,
+    ``.dat``, ``.asc``), ``.parquet`` (extra ``parquet``), ``.nc``, ``.h5`` and ``.hdf5`` (extra
+    ``netcdf``), ``.tdms`` (extra ``measured-tdms``), ``.mf4`` and ``.mdf`` (extra
+    ``measured-mdf``) and ``.wav`` (extra ``analysis``).
+
+    Parameters
+    ----------
+    path
+        The file; or a pandas ``DataFrame``, or an xarray ``Dataset``.
+    channels
+        What each channel is, by its name in the file: a `chaindrive.measurement.Sensor`, the text
+        of its quantity such as ``"span_tension[crank-to-cam]"``, or a dict with the fields of a
+        sensor. Only these are kept. Or a list of names that are kept. All channels when absent.
+    turns
+        How each shaft turns, by the name of the shaft or sprocket: a stated speed such as
+        ``"300 rpm"``, the name of a channel of speed, ``{"encoder": channel, "counts": 1024}``,
+        ``{"tacho": channel, "pulses": 60}``, or the classes of `chaindrive.measurement`. The angle
+        is positive as the readings are.
+    time
+        Name of the channel that is the time, in a file where it is not called so.
+    rate
+        Samples a second [Hz], where the file has no time, or a wrong one.
+    start, until
+        Part of the record to keep, in seconds after its first sample.
+    orders
+        Highest order of interest by shaft: channels that are sampled too slowly for it are told.
+    encoding, decimal, separator
+        Of a table of text, where they are not found by themselves.
+
+    Returns
+    -------
+    xarray.Dataset
+        A variable a channel, (time,), with ``units``, ``long_name``, the name ``in_file`` and the
+        ``unit_in_file``, ``sampling_rate`` [Hz], its ``quantity`` and its ``sensor`` (JSON). What
+        has another time base stands along ``time_2`` and so on. With `turns` the angles of shafts
+        are ``sprocket_angle`` (time, sprocket) [rad], so that `chaindrive.analysis.order_spectrum`
+        takes the dataset as a run. Time begins at zero. Units that no drive has, such as volts,
+        stay what they are. Attributes: ``measured_from``, ``findings`` (their names),
+        ``findings_note`` (in words) and a ``summary`` to print.
+
+    Raises
+    ------
+    MeasurementError
+        The file cannot be read, has no time, or a channel does not exist; `path` and the message
+        name the place.
+    ModuleNotFoundError
+        The extra of the format is not installed.
+
+    Warns
+    -----
+    MeasurementWarning
+        The record has faults: gaps, duplicates, times that go back, jitter, clipping, dropouts,
+        sampling below twice an order of interest.
+
+    Examples
+    --------
+    >>> import chaindrive as cd
+    >>> import numpy as np
+    >>> import pandas as pd
+    >>> time = np.arange(2000) / 1000.0
+    >>> torque = 0.05 * np.sin(2 * np.pi * 7.0 * time) + 1.2
+    >>> table = pd.DataFrame({"time [ms]": 1e3 * time, "flange [kN m]": torque})
+    >>> data = cd.measured(table, turns={"driver": "300 rpm"})
+    >>> data["flange"].attrs["units"], round(float(data["flange"].mean()), 1)
+    ('N m', 1200.0)
+    """
+    options = {
+        name: value
+        for name, value in (("encoding", encoding), ("decimal", decimal), ("separator", separator))
+        if value is not None
+    }
+    raw, source = read_raw(path, options)
+    findings = [Finding(*note) for note in raw.notes]
+    timed = _timed(raw, time, None if rate is None else amount(rate, "Hz", "rate"))
+    sensors = _sensors(raw, channels)
+    bounds = _bounds(start, until)
+    how = {name: turning_by(it, name) for name, it in (turns or {}).items()}
+    bases, of = _bases(timed, sensors, bounds, findings)
+    variables: dict[str, Any] = {}
+    for name, sensor in sensors.items():
+        channel = raw.named(name)
+        base, kept = of[channel.name]
+        values, about = _in_si(channel, sensor, kept)
+        is_told = any(it.kind == "not-a-number" and it.channel == name for it in findings)
+        faults = faults_of(channel.values[kept], name, channel.full_scale)
+        findings += [it for it in faults if not (is_told and "no value" in it.text)]
+        about["sampling_rate"] = sampling_rate(bases[base])
+        key = _core.one_line(name).replace("/", " ")
+        variables[key] = labelled((base,), values, about)
+        if about["units"] and not unit_of(about["units"]).is_known:
+            text = f"its unit {about['units']!r} is none of a drive; give `scale` and `unit`"
+            findings.append(Finding("unit", name, text))
+    _angles(variables, bases, how, timed, findings)
+    findings += _slow(variables, bases, orders or {}, list(how))
+    dimensions: dict[str, NDArray[Any]] = dict(bases)
+    if how:
+        dimensions["sprocket"] = np.asarray(list(how), dtype=np.str_)
+    coordinates = indexed(dimensions, {})
+    for base in bases:
+        coordinates[base].attrs.update({"units": "s", "long_name": "time"})
+    serious = [it for it in findings if it.kind not in _HARMLESS]
+    attributes = {
+        "format": FORMAT,
+        "measured_from": _core.one_line(source),
+        "findings": [it.kind for it in findings],
+        "findings_note": "; ".join(_core.one_line(str(it)) for it in findings),
+    }
+    dataset = xr.Dataset(variables, coords=coordinates, attrs=attributes)
+    dataset.attrs["summary"] = _summary(dataset, findings)
+    if serious:
+        told = "; ".join(map(str, serious[:6])) + (
+            f"; {len(serious) - 6} more" if len(serious) > 6 else ""
+        )
+        warn(f"{source}: {told}", MeasurementWarning)
+    return dataset
+
+
+def _timed(
+    raw: RawRecord, time: str | None, rate: float | None
+) -> dict[str, tuple[RawChannel, _Floats]]:
+    """Return every channel with its times [s]; the time itself is none of them."""
+    if rate is not None:
+        if not rate > 0.0:
+            raise MeasurementError(f"rate = {rate}, must be positive [Hz]", "rate")
+        return {it.name: (it, np.arange(it.values.size) / rate) for it in raw.channels}
+    clocks: dict[int, tuple[str, _Floats]] = {}
+    if time is not None:
+        clock = raw.named(time)
+        clocks[clock.values.size] = (clock.name, _seconds(clock))
+    else:
+        for channel in raw.channels:
+            last = channel.name.rpartition("/")[2].casefold()
+            if channel.time is None and (last in _TIMES or last.partition(" ")[0] in _TIMES):
+                clocks.setdefault(channel.values.size, (channel.name, _seconds(channel)))
+    found = {}
+    for channel in raw.channels:
+        name, times = clocks.get(channel.values.size, ("", None))
+        if time is None and channel.time is not None:
+            times = channel.time
+        if channel.name == name:
+            continue
+        if times is None:
+            names = ", ".join(repr(it.name) for it in raw.channels[:12])
+            raise MeasurementError(
+                f"{channel.name} has no time beside it, and no channel is called time: "
+                f"there are {names}",
+                channel.name,
+                _suggested(raw),
+            )
+        if times.size != channel.values.size:
+            message = f"{channel.name} has {channel.values.size} samples, and its time {times.size}"
+            raise MeasurementError(message, channel.name)
+        found[channel.name] = (channel, times)
+    if not found:
+        raise MeasurementError("there is a time, and no channel beside it", "channels")
+    return found
+
+
+def _suggested(raw: RawRecord) -> str:
+    """Return what to give for a time: the first channel that rises evenly, if there is one."""
+    for it in raw.channels:
+        steps = np.diff(it.values)
+        if steps.size and steps.min() > 0.0 and np.ptp(steps) < 1e-2 * steps.mean():
+            return f"give time={it.name!r}, which rises evenly, or rate='1 kHz'"
+    return "give time='…', the channel that is the time, or rate='1 kHz'"
+
+
+def _seconds(clock: RawChannel) -> _Floats:
+    unit = unit_of(clock.unit)
+    if clock.unit is not None and unit.si != "s":
+        message = f"{clock.name} is in {clock.unit}, which is no time"
+        raise MeasurementError(message, clock.name, "give time='…', or rate='1 kHz'")
+    return unit.factor * clock.values
+
+
+def _sensors(
+    raw: RawRecord, channels: Mapping[str, Any] | Iterable[str] | None
+) -> dict[str, Sensor]:
+    """Return the sensor of every channel that is kept, by its name in the file."""
+    if channels is None:
+        return {it.name: Sensor() for it in raw.channels}
+    if isinstance(channels, Mapping):
+        return {raw.named(name).name: Sensor.of(it, name) for name, it in channels.items()}
+    names = [channels] if isinstance(channels, str) else list(channels)
+    return {raw.named(name).name: Sensor() for name in names}
+
+
+def _bounds(start: Quantity | None, until: Quantity | None) -> tuple[float, float]:
+    begin = 0.0 if start is None else amount(start, "s", "start")
+    end = np.inf if until is None else amount(until, "s", "until")
+    if not begin < end:
+        raise MeasurementError(f"start = {begin} s is not before until = {end} s", "start")
+    return begin, float(end)
+
+
+def _bases(
+    timed: Mapping[str, tuple[RawChannel, _Floats]],
+    sensors: dict[str, Sensor],
+    bounds: tuple[float, float],
+    findings: list[Finding],
+) -> tuple[dict[str, _Floats], dict[str, tuple[str, NDArray[np.int64]]]]:
+    """Return times by base, and the base of every channel with the samples that it keeps.
+
+    All bases have the zero of the earliest one. The time is no channel: it leaves the sensors.
+    """
+    for name in [it for it in sensors if it not in timed]:
+        del sensors[name]
+    first = min(float(np.nanmin(times)) for _, times in timed.values())
+    bases: dict[str, _Floats] = {}
+    of: dict[str, tuple[str, NDArray[np.int64]]] = {}
+    seen: list[tuple[_Floats, str, NDArray[np.int64]]] = []
+    for name in sensors:
+        times = timed[name][1]
+        known = next((it for it in seen if it[0] is times or _same(it[0], times)), None)
+        if known is None:
+            base = "time" if not bases else f"time_{len(bases) + 1}"
+            kept, found = sorted_in_time(times, base)
+            after = times[kept] - first
+            kept = kept[(after >= bounds[0]) & (after <= bounds[1])]
+            if kept.size < 8:
+                last = float(np.nanmax(times)) - first
+                message = f"start and until leave {kept.size} samples of {last:.6g} s"
+                raise MeasurementError(message, "until", "at least 8")
+            bases[base] = times[kept] - first - bounds[0]
+            findings += found + intervals(bases[base], base)
+            known = (times, base, kept)
+            seen.append(known)
+        of[name] = known[1:]
+    return bases, of
+
+
+def _same(one: _Floats, other: _Floats) -> bool:
+    return one.size == other.size and bool(np.array_equal(one, other, equal_nan=True))
+
+
+def _in_si(
+    channel: RawChannel, sensor: Sensor, kept: NDArray[np.int64]
+) -> tuple[_Floats, dict[str, Any]]:
+    """Return readings in SI, and what is to be known about them."""
+    stated = sensor.unit if sensor.unit is not None else channel.unit
+    unit = unit_of(stated)
+    if sensor.unit is not None and not unit.is_known:
+        # The very complaint of the parser, with what it would take.
+        _core.unit(sensor.unit)
+    # x = sign · scale · (r − offset), in the unit of the sensor
+    values = sensor.sign * sensor.scale * (channel.values[kept] - sensor.offset)
+    about: dict[str, Any] = {
+        "units": unit.si,
+        "long_name": channel.name,
+        "in_file": channel.name,
+        "unit_in_file": channel.unit or "",
+        "sensor": sensor.to_json(),
+    }
+    if sensor.quantity is not None:
+        about["quantity"] = sensor.quantity
+    return unit.factor * values + unit.zero, about
+
+
+def _angles(
+    variables: dict[str, Any],
+    bases: Mapping[str, _Floats],
+    how: Mapping[str, Turning],
+    timed: Mapping[str, tuple[RawChannel, _Floats]],
+    findings: list[Finding],
+) -> None:
+    """Add the angles of shafts, along every time base."""
+    if not how:
+        return
+    first = min(float(np.nanmin(times)) for _, times in timed.values())
+    clocked = {name: (it, times - first) for name, (it, times) in timed.items()}
+    for base, times in bases.items():
+        columns = []
+        for name, turning in how.items():
+            angle, found = angle_by(turning, clocked, times, name)
+            columns.append(angle)
+            findings += [it for it in found if it not in findings]
+        about = {"units": "rad", "long_name": "angle of shaft"}
+        key = "sprocket_angle" + base.removeprefix("time")
+        variables[key] = labelled((base, "sprocket"), np.stack(columns, axis=1), about)
+
+
+def _slow(
+    variables: Mapping[str, Any],
+    bases: Mapping[str, _Floats],
+    orders: Mapping[str, float],
+    shafts: list[str],
+) -> list[Finding]:
+    found = []
+    for base, times in bases.items():
+        angles = variables.get("sprocket_angle" + base.removeprefix("time"))
+        for shaft, order in orders.items():
+            if angles is None or shaft not in shafts:
+                message = f"orders.{shaft}: its speed is not known"
+                raise MeasurementError(message, shaft, f"turns={{{shaft!r}: '300 rpm'}}")
+            angle = angles.values[:, shafts.index(shaft)]
+            speed = float(angle[-1] - angle[0]) / float(times[-1] - times[0])
+            what = f"order {order:g} of {shaft}"
+            slow = too_slow(sampling_rate(times), speed, order, what, base)
+            found += [] if slow is None else [slow]
+    return found
+
+
+def _summary(dataset: xr.Dataset, findings: list[Finding]) -> str:
+    lines = [f"{dataset.attrs['measured_from']}:"]
+    width = max((len(str(name)) for name in dataset.data_vars), default=0)
+    for name, variable in dataset.data_vars.items():
+        if not str(name).startswith("sprocket_angle"):
+            mean, unit = float(variable.mean()), variable.attrs["units"] or "no unit"
+            rate, count = variable.attrs["sampling_rate"], variable.size
+            of = variable.attrs.get("quantity", "")
+            lines.append(
+                f"  {name!s:{width}}  mean {mean:.5g} {unit}, {count} samples at {rate:.5g} Hz"
+                + (f", {of}" if of else "")
+            )
+    lines += [f"  {it.kind}: {it}" for it in findings]
+    return _core.plain("\n".join(lines))
