@@ -192,7 +192,7 @@ fn all_arrays_have_the_same_samples_in_a_chunk() {
         .collect();
     assert!(cuts.len() > 20);
     cuts.dedup();
-    assert_eq!(cuts, [6553], "2^17 numbers for 20 links");
+    assert_eq!(cuts, [6241], "2^17 numbers for 21 flows of energy");
 }
 
 /// A travel and an angle have different units, and so have a force and a torque.

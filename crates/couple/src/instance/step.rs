@@ -308,7 +308,9 @@ mod tests {
         let mut unit = unit_of(&scene);
         let [force, work] = [name, "coupling_energy"].map(|name| reference(&unit, name));
         unit.set_real(force, 100.0).unwrap();
-        unit.step(0.0, 1e-4).unwrap();
+        for step in 0..20 {
+            unit.step(f64::from(step) * 1e-4, 1e-4).unwrap();
+        }
         let flows = unit.readings(Channel::EnergyFlows);
         let flow = flows[Flow::Forces as usize];
         let found = unit.real(work).unwrap();
