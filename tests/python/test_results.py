@@ -202,7 +202,7 @@ def test_zarr_holds_what_memory_holds(tmp_path):
 
 def test_a_run_says_how_exact_it_is() -> None:
     bare = cd.scenes.bicycle_slack().replace(BARE)
-    run = cd.simulate(bare, until=8e-3, every=1e-3, run_in=0, record="span_tension")
+    run = cd.simulate(bare, until=12e-3, every=1e-3, run_in=0, record="span_tension")
     story = run.attrs
     assert story["error_estimate"] == "made"
     assert 0 < story["error_tight_span_tension"] < 0.05
