@@ -16,7 +16,7 @@ use crate::command_line::{
 
 const SHORT: &str = "run spinning_ring --until '5 ms' --no-error -q";
 /// A run that would take hours.
-const LONG: &str = "run spinning_ring --until 1e4 --every '1 ms' --no-error -q";
+const LONG: &str = "run spinning_ring --until 2e3 --every '1 ms' --no-error -q";
 
 /// Removes a folder into which another process writes: a file that it puts where the last one was
 /// just taken away makes the removal fail, and it is asked for again.
