@@ -15,7 +15,7 @@ use crate::command_line::{
 };
 
 const SHORT: &str = "run spinning_ring --until '5 ms' --no-error -q";
-/// A run that would take hours.
+/// A run that would take minutes, less than what is foretold.
 const LONG: &str = "run spinning_ring --until 2e3 --every '1 ms' --no-error -q";
 
 /// Removes a folder into which another process writes: a file that it puts where the last one was
