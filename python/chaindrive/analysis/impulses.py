@@ -107,7 +107,7 @@ def impulse_spectrum(
     amplitude = np.sqrt((4.0 * squares / seconds[..., None] ** 2).mean(axis=1))
     density = (2.0 * squares / seconds[..., None]).mean(axis=1)
     whole = seconds.sum(axis=1)
-    over = f"{blocks} blocks of {meshes} mesh periods"
+    over = _averaging(blocks, meshes)
     return xr.Dataset(
         {
             "amplitude": (
@@ -235,7 +235,7 @@ def impulse_level(
     listed = ", ".join(f"{it:g}" for it in orders)
     plural = "s" if len(orders) > 1 else ""
     told = f"at mesh order{plural} {listed} re {name}, band ± {half_width:g} mesh orders"
-    told += f", mean over {blocks} blocks of {meshes} mesh periods"
+    told += f", mean over {_averaging(blocks, meshes)}"
 
     def values(what: str, of: _Floats) -> tuple[Any, ...]:
         return ("sprocket", "order"), of, {"units": "dB", "long_name": f"{what} {told}"}
@@ -348,6 +348,10 @@ def _cut(trains: list[_Train], blocks: int, meshes: int | None) -> tuple[int, in
             "blocks",
         )
     return meshes, blocks
+
+
+def _averaging(blocks: int, meshes: int) -> str:
+    return f"{blocks} blocks of {meshes} mesh period{'s' if meshes > 1 else ''}"
 
 
 def _decibels(ratio: _Floats) -> _Floats:

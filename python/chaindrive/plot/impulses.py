@@ -37,9 +37,6 @@ def impulse_spectrum(source: xr.Dataset, *, ax: Axes | None = None, **options: A
         ax.set_ylabel(written("amplitude of impulses", unit))
         ax.set_xlim(0.0, float(amplitude["order"][-1]))
         ax.set_xlabel("order of the mesh")
-        ax.set_title(
-            f"{found.attrs['blocks']} blocks of {found.attrs['meshes']} mesh periods",
-            fontsize="small",
-        )
+        ax.set_title(amplitude.attrs["long_name"], fontsize="small")
         legend_below(ax)
     return ax
