@@ -16,6 +16,7 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
+from impulses import impulses
 from marine_drive import (
     PITCH,
     SPANS,
@@ -322,6 +323,7 @@ PARTS: Mapping[str, Callable[[Page, Length], None]] = {
     "polygon": polygon,
     "vibration": vibration,
     "models": models,
+    "impulses": impulses,
 }
 
 

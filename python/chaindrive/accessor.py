@@ -22,6 +22,7 @@ from chaindrive.analysis import (
     elongation,
     engagement,
     fatigue,
+    impulses,
     joints,
     orders,
     running,
@@ -93,6 +94,8 @@ class DriveAccessor:
     tension_around_loop = _method(around.tension_around_loop)
     tooth_load = _method(engagement.tooth_load)
     impacts = _method(seating.impacts)
+    impulse_spectrum = _method(impulses.impulse_spectrum)
+    impulse_level = _method(impulses.impulse_level)
     losses = _method(dissipation.losses)
     joint_work = _method(joints.joint_work)
     wear = _method(elongation.wear)

@@ -41,6 +41,7 @@ def report(
     path: str | PathLike[str] | None = None,
     *,
     comparison: xr.Dataset | None = None,
+    reference: xr.Dataset | None = None,
 ) -> str:
     """Make the report of a run: one HTML file that needs nothing else, and prints well.
 
@@ -57,6 +58,9 @@ def report(
         Where to write, in place of what was there; absent: nowhere.
     comparison
         What `compare` returned of this run and a measurement: a section of the report.
+    reference
+        Another run with ``events="teeth"``: a section has the levels of impulses at mesh orders re
+        it, by `chaindrive.analysis.impulse_level`.
 
     Returns
     -------
@@ -73,18 +77,20 @@ def report(
         The file cannot be written; what was in its place is still there.
     """
     place = None if path is None else NewFile(path)
-    text = _report(source, comparison)
+    text = _report(source, comparison, reference)
     if place is not None:
         place.write(text.encode())
     return text
 
 
 def _report(
-    source: Drive | xr.Dataset | str | PathLike[str], comparison: xr.Dataset | None = None
+    source: Drive | xr.Dataset | str | PathLike[str],
+    comparison: xr.Dataset | None = None,
+    reference: xr.Dataset | None = None,
 ) -> str:
     # Missed before anything is simulated.
     extra("matplotlib.pyplot", "plots")
-    return _document(_run(source), comparison)
+    return _document(_run(source), comparison, reference)
 
 
 def _run(source: Drive | xr.Dataset | str | PathLike[str]) -> xr.Dataset:
@@ -100,10 +106,10 @@ def _run(source: Drive | xr.Dataset | str | PathLike[str]) -> xr.Dataset:
     return simulate(source, record="all", events=["teeth"])
 
 
-def _document(run: xr.Dataset, comparison: xr.Dataset | None) -> str:
+def _document(run: xr.Dataset, comparison: xr.Dataset | None, reference: xr.Dataset | None) -> str:
     about = run.attrs
     told = page_of(run)
-    title = str(about.get("title") or about.get("scene_name") or "chain drive")
+    title = _title(run)
     verdict, *sections = told.sections
     parts = [
         f"<h1>{escaped(title)}</h1>",
@@ -112,6 +118,7 @@ def _document(run: xr.Dataset, comparison: xr.Dataset | None) -> str:
         _picture("The drive at the start", lambda ax: _layout(run, ax)),
         *(section(it, level=2) for it in sections),
         *_compared(comparison),
+        *impulse_levels(run, reference),
         "<h2>Diagrams</h2>",
         *(_picture(name, draw) for name, draw in _diagrams(run)),
         "<h2>Inputs and their sources</h2>",
@@ -160,6 +167,49 @@ def _compared(found: xr.Dataset | None) -> Iterator[str]:
             )
 
 
+def _title(run: xr.Dataset) -> str:
+    return str(run.attrs.get("title") or run.attrs.get("scene_name") or "chain drive")
+
+
+def impulse_levels(run: xr.Dataset, reference: xr.Dataset | None) -> Iterator[str]:
+    """Section of the levels of impulses re another run; none without one."""
+    if reference is None:
+        return
+    from chaindrive.analysis import impulse_level
+
+    title = f"impulse level re {_title(reference)}"
+    try:
+        found = impulse_level(run, reference, name=_title(reference))
+    except ChaindriveError as reason:
+        yield section({"title": title, "columns": [], "rows": [], "sentences": [str(reason)]}, 2)
+        return
+    cells = [
+        f"{float(at['level']):+.2f} ({float(at['low']):+.2f} to {float(at['high']):+.2f})"
+        for name in found["sprocket"]
+        for at in (found.sel(sprocket=name, order=order) for order in found["order"])
+    ]
+    orders = found.sizes["order"]
+    rows = [
+        [str(name), *cells[orders * row : orders * (row + 1)], f"{broadband:+.2f}"]
+        for row, (name, broadband) in enumerate(
+            zip(found["sprocket"].to_numpy(), found["broadband_level"].to_numpy(), strict=True)
+        )
+    ]
+    columns = [f"mesh order {order:g} [dB]" for order in found["order"].to_numpy()]
+    yield section(
+        {
+            "title": found["level"].attrs["long_name"],
+            "columns": ["sprocket", *columns, "high orders [dB]"],
+            "rows": rows,
+            "sentences": [
+                "In brackets: 95 % interval by blocks. High orders: the density of all impulses. "
+                "Levels compare how contacts begin, and are no sound pressure."
+            ],
+        },
+        2,
+    )
+
+
 def _layout(run: xr.Dataset, ax: Axes) -> None:
     from chaindrive import plot
 
@@ -177,6 +227,7 @@ def _diagrams(run: xr.Dataset) -> Iterator[tuple[str, Callable[[Axes], object]]]
         ("Force around the loop", plot.tension_around_loop),
         ("Orders in the tension", orders),
         ("Impacts", plot.impacts),
+        ("Orders of the impulses on sprockets", plot.impulse_spectrum),
         ("Losses", plot.losses),
         ("Utilisation", plot.utilisation),
         ("Elongation by wear to the limit", plot.elongation),

@@ -23,7 +23,10 @@ SHORTER = {
     "exchange.md": {"until=5e-3": "until=5e-3, run_in=0"},
     "precision.md": {"until=0.05": "until=5e-3, run_in=0"},
     "replay.md": {"until=5e-3": "until=5e-3, run_in=0"},
-    "spectra-and-modes.md": {"until=3": 'until=1.5, method="verlet"'},
+    "spectra-and-modes.md": {
+        "until=3": 'until=1.5, method="verlet"',
+        "until=0.4, run_in=0.2": "until=0.15, run_in=0",
+    },
     "sweeps.md": {'"10 ms"': '"0 s"', "-14.0, 20)": "-14.0, 4)", "== 20": "== 4"},
     "measured.md": {
         "until=0.4, every=2e-4": "until=0.25, every=2e-4",

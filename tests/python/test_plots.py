@@ -32,6 +32,7 @@ PLOTS = [
     "tension_around_loop",
     "tooth_load",
     "impacts",
+    "impulse_spectrum",
     "losses",
     "joint_work",
     "elongation",
@@ -43,6 +44,7 @@ ABSENT = (
     r"this drive has no (spans|sprockets)",
     r"chain of particles|one closed chain|runs around no sprocket|runs over no sprocket but",
     r"simulate longer|turns [\d.]+ times in all|a window of|does not change|no sprocket turns",
+    r"too few for \d+ blocks|stands or goes back",
     r"nothing is lost|nothing wears|nothing pulls",
     r"has no pin diameter|have no length|has no breaking load",
 )

@@ -76,6 +76,7 @@ def test_units_of_analyses_are_units() -> None:
         of_drive.transmission_error("crank", "intake"),
         of_drive.speed_ripple(),
         of_drive.impacts(),
+        of_drive.impulse_spectrum(blocks=2),
         of_drive.losses(),
         of_drive.joint_work(bush_length=0.01),
         of_drive.wear(bush_length=0.01),
@@ -86,6 +87,14 @@ def test_units_of_analyses_are_units() -> None:
         cd.catalogue(),
     ]:
         read(told(found))
+
+
+def test_levels_are_decibels_to_pint() -> None:
+    """UDUNITS has no decibels, only logarithms that pint does not read."""
+    run = run_of("timing_drive", until=0.01)
+    level = run.drive.impulse_level(run, blocks=2)
+    assert told(level) == {"dB", "1"}
+    assert UREG.parse_units("dB") == UREG.decibel
 
 
 def test_units_of_sweeps_are_units(tmp_path) -> None:

@@ -17,6 +17,7 @@ from chaindrive.analysis.duty import utilisation
 from chaindrive.analysis.elongation import wear, worn
 from chaindrive.analysis.engagement import decay, tooth_load
 from chaindrive.analysis.fatigue import cycles, rainflow
+from chaindrive.analysis.impulses import impulse_level, impulse_spectrum
 from chaindrive.analysis.joints import joint_work
 from chaindrive.analysis.order_names import order_names
 from chaindrive.analysis.orders import campbell, mesh_orders, order_map, order_slice, order_spectrum
@@ -38,6 +39,8 @@ __all__ = [
     "cycles",
     "decay",
     "impacts",
+    "impulse_level",
+    "impulse_spectrum",
     "joint_work",
     "losses",
     "mesh_orders",

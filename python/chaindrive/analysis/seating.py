@@ -11,7 +11,7 @@ from chaindrive.analysis.parts import ChainParts, SprocketParts, sprockets
 from chaindrive.analysis.signal import recorded, require
 from chaindrive.errors import ParameterError
 
-__all__ = ["PERCENTILES", "impacts", "swing_speed"]
+__all__ = ["PERCENTILES", "impacts", "striking", "swing_speed"]
 
 PERCENTILES = (10.0, 50.0, 90.0, 99.0)
 """Percentiles that `impacts` returns."""
@@ -67,7 +67,7 @@ def impacts(run: xr.Dataset, *, mass: float | None = None) -> xr.Dataset:
     recorded(run, "sprocket_angle")
     require(run, "sprocket")
     known = sprockets(run)
-    rows = [_of(run, wheel, _striking(wheel.chain, mass)) for wheel in known.values()]
+    rows = [_of(run, wheel, striking(wheel.chain, mass)) for wheel in known.values()]
     seconds = float(run["time"][-1] - run["time"][0])
     if not any(engaged.sizes["engagement"] for engaged, _ in rows):
         message = "no roller came to a sprocket during the run: simulate longer"
@@ -175,7 +175,7 @@ def swing_speed(run: xr.Dataset, wheel: SprocketParts) -> float:
     return wheel.chain.pitch * _speed(run, wheel)
 
 
-def _striking(chain: ChainParts, given: float | None) -> float:
+def striking(chain: ChainParts, given: float | None) -> float:
     """Return the mass that the model lets strike a tooth [kg]."""
     if given is not None:
         if not given > 0.0:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from chaindrive.plot.curves import tension, work_precision
 from chaindrive.plot.drive import frame, layout, svg
+from chaindrive.plot.impulses import impulse_spectrum
 from chaindrive.plot.measured import (
     compared_orders,
     comparison,
@@ -53,6 +54,7 @@ __all__ = [
     "elongation",
     "frame",
     "impacts",
+    "impulse_spectrum",
     "joint_work",
     "layout",
     "losses",
