@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -67,7 +67,6 @@ class Experiment:
     evaluations: Evaluations
     designs: list[dict[str, float]]
     """Phases of replicated designs."""
-    _features: dict[Any, _Floats] = field(default_factory=dict)
 
     def row(self, x: Mapping[str, float], design: int = 0) -> dict[str, float]:
         """Return the values by path that a run takes."""

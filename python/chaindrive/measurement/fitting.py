@@ -125,11 +125,21 @@ class Fit:
             (n, *priors[it.path]) for n, it in enumerate(parameters) if it.path in priors
         ]
         self._loss, self._tell = loss, tell
+        self._seen: dict[tuple[int, bytes], _Floats | None] = {}
         #: Designs that derivatives are taken from: one, or all where one is too noisy.
         self.designs = 1
 
     def features(self, points: Sequence[_Floats], design: int = 0) -> list[_Floats | None]:
         """Return the features of parameter vectors [SI]; None where a run fails."""
+        keys = [(design, x.tobytes()) for x in points]
+        new = {key: x for key, x in zip(keys, points, strict=True) if key not in self._seen}
+        if new:
+            found = self._computed(list(new.values()), design)
+            self._seen |= dict(zip(new, found, strict=True))
+            self._tell()
+        return [self._seen[key] for key in keys]
+
+    def _computed(self, points: Sequence[_Floats], design: int) -> list[_Floats | None]:
         vectors = [self._named(x) for x in points]
         parts: list[list[_Floats | None]] = []
         for it in self.experiments:
@@ -141,12 +151,12 @@ class Fit:
                     for run, x in zip(runs, vectors, strict=True)
                 ]
             )
-        self._tell()
-        found: list[_Floats | None] = []
-        for row in zip(*parts, strict=True):
-            rows = [it for it in row if it is not None]
-            found.append(np.concatenate(rows) if len(rows) == len(row) else None)
-        return found
+        rows = zip(*parts, strict=True)
+        # Of several records a point counts where each of its runs reached its end.
+        return [
+            None if any(it is None for it in row) else np.concatenate([*row])  # type: ignore[list-item]
+            for row in rows
+        ]
 
     def derivatives(self, x: _Floats, step: float = _STEP, design: int = 0) -> _Floats:
         """Return the change of features with half ranges at a point [SI], (features, p).
