@@ -14,7 +14,7 @@ from chaindrive.measurement.experiment import Errors, Experiment
 from chaindrive.measurement.free import FreeParameter
 from chaindrive.measurement.sensitivities import CLEAR, STEPS
 
-__all__ = ["Fit", "Optimum", "Worth", "chance", "differs", "drawn", "joined"]
+__all__ = ["Fit", "Optimum", "Worth", "chance", "differs", "drawn", "joined", "rooted"]
 
 _Floats = NDArray[np.float64]
 
@@ -82,6 +82,11 @@ def joined(parts: Sequence[Errors]) -> Errors:
     )
 
 
+def rooted(covariance: _Floats) -> _Floats:
+    """Return L of a covariance ``C = L Lᵀ``."""
+    return np.asarray(np.linalg.cholesky(covariance), dtype=np.float64)
+
+
 def differs(frozen: Mapping[str, Any], anew: Mapping[str, Any]) -> bool:
     """Tell whether another run chooses otherwise: another method or step, or a longer run-in.
 
@@ -116,7 +121,7 @@ class Fit:
                 message, "data", "a longer record, of three periods of the slowest forcing or more"
             )
         among = np.ix_(self.known, self.known)
-        self._root = np.linalg.cholesky(self.errors.covariance[among])
+        self._root = rooted(self.errors.covariance[among])
         self.low = np.array([it.low for it in parameters])
         self.high = np.array([it.high for it in parameters])
         self.half = np.array([it.half_range for it in parameters])
@@ -153,10 +158,7 @@ class Fit:
             )
         rows = zip(*parts, strict=True)
         # Of several records a point counts where each of its runs reached its end.
-        return [
-            None if any(it is None for it in row) else np.concatenate([*row])  # type: ignore[list-item]
-            for row in rows
-        ]
+        return [None if any(it is None for it in row) else np.concatenate([*row]) for row in rows]
 
     def derivatives(self, x: _Floats, step: float = _STEP, design: int = 0) -> _Floats:
         """Return the change of features with half ranges at a point [SI], (features, p).
@@ -263,7 +265,7 @@ class Fit:
         if self._loss != "linear":
             # As the loss weighs the residuals.
             rows = at.jacobian
-        inverse = np.linalg.pinv(rows.T @ rows)
+        inverse = np.asarray(np.linalg.pinv(rows.T @ rows), dtype=np.float64)
         residual = (features - self.errors.values)[self.known]
         whitened = np.linalg.solve(self._root, residual)
         # Noise of derivatives moves the gradient, and with it the optimum: δg = δJᵀ C⁻¹ r.
@@ -321,8 +323,7 @@ class Fit:
         return np.concatenate([white, priors])
 
     def _rooted(self, jacobian: _Floats) -> _Floats:
-        found: _Floats = np.linalg.solve(self._root, jacobian[self.known])
-        return found
+        return np.asarray(np.linalg.solve(self._root, jacobian[self.known]), dtype=np.float64)
 
     def _whitened(self, x: _Floats) -> _Floats:
         slopes = [self.derivatives(x, _STEP, design) for design in range(self.designs)]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from chaindrive.measurement.fitting import Fit, Optimum, Worth, chance, drawn, joined
+from chaindrive.measurement.fitting import Fit, Optimum, Worth, chance, drawn, joined, rooted
 
 __all__ = ["Kept", "validated"]
 
@@ -60,8 +60,8 @@ def validated(fit: Fit, best: Optimum, worth: Worth, level: float) -> Kept | Non
         jacobian, _ = fit.replicated(best.x)
         covariance += jacobian @ worth.covariance @ jacobian.T
     among = np.ix_(known, known)
-    root = np.linalg.cholesky(covariance[among])
-    residual = np.linalg.solve(root, (simulated - errors.values)[known])
+    root = rooted(covariance[among])
+    residual = np.asarray(np.linalg.solve(root, (simulated - errors.values)[known]), np.float64)
     cast = drawn(errors, covariance, known, root)
     p_value = chance(residual, np.zeros((residual.size, 0)), cast)
     verdict = "misses" if p_value < level else "holds"
