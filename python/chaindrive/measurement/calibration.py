@@ -98,7 +98,8 @@ def calibrate(
         Share of the end of each record that is not fitted, but held against the fit [–]; 0 for
         none.
     starts
-        Starts over the ranges, at least 1: the drive's own, and a Latin hypercube.
+        Starts over the ranges, at least 1: the best of the drive's own and of a Latin hypercube
+        with twice as many points for each parameter of the scene. 1: the drive's own alone.
     level
         Level of the intervals [–].
     until
@@ -292,7 +293,7 @@ def _priors(
 
 def _inside(fit: Fit) -> _Floats:
     """Return the start, far enough from the bounds for central differences."""
-    return np.array([it.around(0.2)[1] for it in fit.parameters])
+    return np.array([it.around(0.05)[1] for it in fit.parameters])
 
 
 def _settled(fit: Fit, starts: int, how: tuple[Any, str, Callable[[], object]]) -> Settled:
@@ -304,7 +305,7 @@ def _settled(fit: Fit, starts: int, how: tuple[Any, str, Callable[[], object]]) 
     if any(new is not old for new, old in zip(again, fit.experiments, strict=True)):
         other = Fit(again, fit.parameters, known, loss, steps)
         other.designs = fit.designs
-        last = other.optimum(optima[0].x)
+        last = other.optimum(optima[0].x, is_near=True)
         moved = last.x - optima[0].x
         fit, optima = other, [last, *optima[1:]]
     return Settled(fit, optima, fit.worth(optima[0]), moved)

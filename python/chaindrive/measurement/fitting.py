@@ -12,14 +12,17 @@ from chaindrive.errors import MeasurementError, SimulationError
 from chaindrive.extras import extra
 from chaindrive.measurement.experiment import Errors, Experiment
 from chaindrive.measurement.free import FreeParameter
-from chaindrive.measurement.sensitivities import CLEAR, STEPS
+from chaindrive.measurement.sensitivities import CLEAR
 
 __all__ = ["Fit", "Optimum", "Worth", "chance", "differs", "drawn", "joined", "rooted"]
 
 _Floats = NDArray[np.float64]
 
-#: Step of the differences of a fit, as a share of half the range [–]; that of the second design.
-_STEP = STEPS[-1]
+#: Step of the differences of a fit, as a share of half the range [–] (assumed): amplitudes bend
+#: over more of it as drives come near to a resonance, and beside it a run has little noise.
+_STEP = 0.05
+#: Share by which amplitudes may be off in the first of two fits [–] (assumed).
+_LOOSE = 0.5
 #: Relative change of cost, parameters and gradient at which a fit ends [–]: some
 #: hundredths of an error.
 _ENOUGH = 1e-3
@@ -122,6 +125,10 @@ class Fit:
             )
         among = np.ix_(self.known, self.known)
         self._root = rooted(self.errors.covariance[among])
+        # Of a first fit: amplitudes that only have to be about right make fewer valleys.
+        orders = np.array([" order " in it for it in self.errors.names])
+        loose = np.where(orders, _LOOSE * self.errors.values, 0.0) ** 2
+        self._soft = rooted((self.errors.covariance + np.diag(loose))[among])
         self.low = np.array([it.low for it in parameters])
         self.high = np.array([it.high for it in parameters])
         self.half = np.array([it.half_range for it in parameters])
@@ -177,9 +184,14 @@ class Fit:
         return np.stack(columns, axis=1)
 
     def replicated(self, x: _Floats) -> tuple[_Floats, _Floats]:
-        """Return derivatives by two designs, of two phases and steps: their mean and noise."""
+        """Return derivatives by two designs, of two phases: their mean and noise.
+
+        Of one step, for what bends is no noise. Where no chain has a phase, by one step and by two
+        of it, whose difference is more than noise.
+        """
         most = max(len(it.designs) for it in self.experiments)
-        slopes = [self.derivatives(x, step, n % most) for n, step in enumerate(STEPS[::-1])]
+        how = [(_STEP, 0), (_STEP, 1)] if most > 1 else [(_STEP, 0), (2.0 * _STEP, 0)]
+        slopes = [self.derivatives(x, *it) for it in how]
         return np.mean(slopes, axis=0), np.std(slopes, axis=0)
 
     def is_noisy(self, jacobian: _Floats, noise: _Floats) -> bool:
@@ -205,20 +217,26 @@ class Fit:
         return self._residuals(self._all([x], 0)[0], x)
 
     def starts(self, count: int) -> list[tuple[float, _Floats]]:
-        """Return starts over the ranges with their costs: the drive's own and a Latin hypercube."""
+        """Return starts over the ranges with their costs, the best of many.
+
+        The drive's own is one, and a Latin hypercube has twice as many as starts for each
+        parameter of the scene: nuisances of sensors take no runs.
+        """
         qmc = extra("scipy.stats", "fits").qmc
-        share = qmc.LatinHypercube(len(self.parameters), rng=_SEED).random(max(count - 1, 0))
+        scene = sum(not it.is_of_sensor for it in self.parameters)
+        wanted = 0 if count == 1 else count * max(2 * scene, 1) - 1
+        share = qmc.LatinHypercube(len(self.parameters), rng=_SEED).random(wanted)
         points = [self.start, *(self.low + share * (self.high - self.low))]
         rows = zip(points, self.features(points), strict=True)
         found = [
-            (0.5 * float(np.sum(self._residuals(it, x) ** 2)), x)
+            (0.5 * float(np.sum(self._residuals(it, x, self._soft) ** 2)), x)
             for x, it in rows
             if it is not None
         ]
         if not found:
             message = "none of the starts over the ranges can be simulated"
             raise SimulationError(message, "free", "narrower bounds")
-        return sorted(found, key=lambda it: it[0])
+        return sorted(found, key=lambda it: it[0])[:count]
 
     def optima(self, count: int) -> list[Optimum]:
         """Return the optima that are found from several starts, the best first.
@@ -239,21 +257,29 @@ class Fit:
                 apart.append(it)
         return apart
 
-    def optimum(self, start: _Floats) -> Optimum:
-        """Return where SciPy's bounded least squares end from a start."""
-        inside = np.clip(start, self.low + 1e-3 * self.half, self.high - 1e-3 * self.half)
-        found = extra("scipy.optimize", "fits").least_squares(
-            self.residuals,
-            inside,
-            jac=self._whitened,
-            bounds=(self.low, self.high),
-            x_scale=self.half,
-            loss=self._loss,
-            ftol=_ENOUGH,
-            xtol=_ENOUGH,
-            gtol=_ENOUGH,
-            max_nfev=_LONGEST,
-        )
+    def optimum(self, start: _Floats, *, is_near: bool = False) -> Optimum:
+        """Return where SciPy's bounded least squares end from a start.
+
+        Amplitudes near a resonance have many valleys: a first fit takes them loosely, unless the
+        start is near an optimum.
+        """
+        x = start
+        for root in [self._root] if is_near else [self._soft, self._root]:
+            inside = np.clip(x, self.low + 1e-3 * self.half, self.high - 1e-3 * self.half)
+            found = extra("scipy.optimize", "fits").least_squares(
+                lambda x, root: self._residuals(self._all([x], 0)[0], x, root),
+                inside,
+                jac=self._whitened,
+                bounds=(self.low, self.high),
+                x_scale=self.half,
+                loss=self._loss,
+                ftol=_ENOUGH,
+                xtol=_ENOUGH,
+                gtol=_ENOUGH,
+                max_nfev=_LONGEST,
+                args=(root,),
+            )
+            x = found.x
         return Optimum(found.x, float(found.cost), found.jac * self.half)
 
     def worth(self, at: Optimum) -> Worth:
@@ -317,17 +343,18 @@ class Fit:
                 raise SimulationError(message, "free", "narrower bounds")
         return [it for it in found if it is not None]
 
-    def _residuals(self, features: _Floats, x: _Floats) -> _Floats:
-        white = np.linalg.solve(self._root, (features - self.errors.values)[self.known])
+    def _residuals(self, features: _Floats, x: _Floats, root: _Floats | None = None) -> _Floats:
+        root = self._root if root is None else root
+        white = np.linalg.solve(root, (features - self.errors.values)[self.known])
         priors = [(x[n] - mean) / deviation for n, mean, deviation in self._priors]
         return np.concatenate([white, priors])
 
     def _rooted(self, jacobian: _Floats) -> _Floats:
         return np.asarray(np.linalg.solve(self._root, jacobian[self.known]), dtype=np.float64)
 
-    def _whitened(self, x: _Floats) -> _Floats:
+    def _whitened(self, x: _Floats, root: _Floats) -> _Floats:
         slopes = [self.derivatives(x, _STEP, design) for design in range(self.designs)]
-        rows = self._rooted(np.mean(slopes, axis=0))
+        rows = np.linalg.solve(root, np.mean(slopes, axis=0)[self.known])
         found: _Floats = self.with_priors(rows, np.eye(len(rows)))[0] / self.half
         return found
 

@@ -18,7 +18,6 @@ from chaindrive.sweeping import sweep
 
 __all__ = [
     "CLEAR",
-    "STEPS",
     "Sensitivities",
     "as_run",
     "sensitivities",
@@ -30,7 +29,7 @@ _Floats = NDArray[np.float64]
 
 #: Steps of central differences of two designs, as shares of half the range [–] (assumed: the effect
 #: of what matters exceeds the noise of a run, and is still a straight line).
-STEPS = (0.2, 0.1)
+_STEPS = (0.2, 0.1)
 #: Phases of the chain at the start of the two, after that of the drive [pitches]. What they differ
 #: by is noise and bending.
 _PHASES = (0.0, 0.37)
@@ -93,14 +92,14 @@ def sensitivities(
     columns, noises = [], []
     for it in parameters:
         if it.is_of_sensor:
-            low, _, high = it.around(STEPS[0])
-            slopes = [_of_sensor(it, how, run, (low, high)) / (2.0 * STEPS[0])]
+            low, _, high = it.around(_STEPS[0])
+            slopes = [_of_sensor(it, how, run, (low, high)) / (2.0 * _STEPS[0])]
         else:
             # ∂y/∂θ · (range/2) by central differences
             slopes = [
                 (values_of(features_of(how, above)) - values_of(features_of(how, below)))
                 / (2.0 * step)
-                for step, (below, above) in zip(STEPS, points[it.path], strict=False)
+                for step, (below, above) in zip(_STEPS, points[it.path], strict=False)
             ]
         columns.append(np.mean(slopes, axis=0))
         noises.append(np.std(slopes, axis=0))
@@ -138,10 +137,10 @@ def _points(
     tell: Callable[[float], object] | None,
 ) -> dict[str, list[tuple[xr.Dataset, xr.Dataset]]]:
     """Return the runs below and above of every parameter, of every design."""
-    middles = {it.path: it.around(STEPS[0])[1] for it in parameters}
+    middles = {it.path: it.around(_STEPS[0])[1] for it in parameters}
     rows: list[dict[str, float]] = []
     designs = starts(drive)
-    for start, step in zip(designs, STEPS, strict=False):
+    for start, step in zip(designs, _STEPS, strict=False):
         for it in parameters:
             low, high = (middles[it.path] + sign * step * it.half_range for sign in (-1, 1))
             rows += [middles | start | {it.path: low}, middles | start | {it.path: high}]
