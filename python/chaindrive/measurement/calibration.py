@@ -162,6 +162,7 @@ def calibrate(
         fit = Fit(experiments, parameters, known, loss, steps)
         jacobian, noise = fit.replicated(_inside(fit))
         fit.designs = 1 + fit.is_noisy(jacobian, noise)
+        fit.refine(jacobian)
         both, covariance = fit.with_priors(jacobian, fit.errors.covariance)
         noises = np.zeros_like(both)
         noises[: len(noise)] = noise
@@ -304,7 +305,7 @@ def _settled(fit: Fit, starts: int, how: tuple[Any, str, Callable[[], object]]) 
     moved = np.zeros(len(fit.parameters))
     if any(new is not old for new, old in zip(again, fit.experiments, strict=True)):
         other = Fit(again, fit.parameters, known, loss, steps)
-        other.designs = fit.designs
+        other.designs, other.steps = fit.designs, fit.steps
         last = other.optimum(optima[0].x, is_near=True)
         moved = last.x - optima[0].x
         fit, optima = other, [last, *optima[1:]]

@@ -23,6 +23,8 @@ _Floats = NDArray[np.float64]
 _STEP = 0.05
 #: Share by which amplitudes may be off in the first of two fits [–] (assumed).
 _LOOSE = 0.5
+#: Shortest step (assumed): the numbers of a run are rough below.
+_LEAST_STEP = 0.005
 #: Relative change of cost, parameters and gradient at which a fit ends [–]: some
 #: hundredths of an error.
 _ENOUGH = 1e-3
@@ -140,6 +142,14 @@ class Fit:
         self._seen: dict[tuple[int, bytes], _Floats | None] = {}
         #: Designs that derivatives are taken from: one, or all where one is too noisy.
         self.designs = 1
+        #: Steps of differences, as shares of half a range (p,) [–].
+        self.steps = np.full(len(parameters), _STEP)
+
+    def refine(self, jacobian: _Floats) -> None:
+        """Take steps that move the record by about one error, where that is less."""
+        rows, _ = self.with_priors(self._rooted(jacobian), np.eye(int(self.known.sum())))
+        size = np.linalg.norm(rows, axis=0)
+        self.steps = np.clip(1.0 / np.maximum(size, 1.0), _LEAST_STEP, _STEP)
 
     def features(self, points: Sequence[_Floats], design: int = 0) -> list[_Floats | None]:
         """Return the features of parameter vectors [SI]; None where a run fails."""
@@ -167,7 +177,7 @@ class Fit:
         # Of several records a point counts where each of its runs reached its end.
         return [None if any(it is None for it in row) else np.concatenate([*row]) for row in rows]
 
-    def derivatives(self, x: _Floats, step: float = _STEP, design: int = 0) -> _Floats:
+    def derivatives(self, x: _Floats, factor: float = 1.0, design: int = 0) -> _Floats:
         """Return the change of features with half ranges at a point [SI], (features, p).
 
         ``∂y/∂θ ≈ (y(θ + h) − y(θ − h)) / 2h``, with common random numbers, within the bounds.
@@ -175,8 +185,9 @@ class Fit:
         points, widths = [], []
         for n in range(x.size):
             above, below = x.copy(), x.copy()
-            above[n] = min(x[n] + step * self.half[n], self.high[n])
-            below[n] = max(x[n] - step * self.half[n], self.low[n])
+            step = factor * self.steps[n] * self.half[n]
+            above[n] = min(x[n] + step, self.high[n])
+            below[n] = max(x[n] - step, self.low[n])
             points += [above, below]
             widths.append((above[n] - below[n]) / self.half[n])
         found = self._all(points, design)
@@ -190,7 +201,7 @@ class Fit:
         of it, whose difference is more than noise.
         """
         most = max(len(it.designs) for it in self.experiments)
-        how = [(_STEP, 0), (_STEP, 1)] if most > 1 else [(_STEP, 0), (2.0 * _STEP, 0)]
+        how = [(1.0, 0), (1.0, 1)] if most > 1 else [(1.0, 0), (2.0, 0)]
         slopes = [self.derivatives(x, *it) for it in how]
         return np.mean(slopes, axis=0), np.std(slopes, axis=0)
 
@@ -353,7 +364,7 @@ class Fit:
         return np.asarray(np.linalg.solve(self._root, jacobian[self.known]), dtype=np.float64)
 
     def _whitened(self, x: _Floats, root: _Floats) -> _Floats:
-        slopes = [self.derivatives(x, _STEP, design) for design in range(self.designs)]
+        slopes = [self.derivatives(x, 1.0, design) for design in range(self.designs)]
         rows = np.linalg.solve(root, np.mean(slopes, axis=0)[self.known])
         found: _Floats = self.with_priors(rows, np.eye(len(rows)))[0] / self.half
         return found
