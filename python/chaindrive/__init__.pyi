@@ -47,6 +47,7 @@ from chaindrive.live import Simulation as Simulation
 from chaindrive.live import Snapshot as Snapshot
 from chaindrive.live import View as View
 from chaindrive.live import step_many as step_many
+from chaindrive.measurement.calibration import calibrate as calibrate
 from chaindrive.measurement.checking import check_data as check_data
 from chaindrive.measurement.comparison import compare as compare
 from chaindrive.measurement.record import measured as measured

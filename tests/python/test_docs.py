@@ -31,6 +31,7 @@ SHORTER = {
     "measured.md": {
         "until=0.4, every=2e-4": "until=0.25, every=2e-4",
         "    until=0.2,\n": "    until=0.06,\n",
+        '    until=0.06,\n    store="fit",\n': "    until=0.06,\n    starts=1,\n",
         "until=0.4, every=5e-5": "until=0.25, every=5e-5",
         'cd.report(run, "report.html", comparison=found)': "pass",
     },

@@ -15,7 +15,15 @@ from chaindrive.measurement.quantities import MeasuredQuantity
 from chaindrive.measurement.sensor import Sensor
 from chaindrive.measurement.series import Series, measured_series, simulated_series
 
-__all__ = ["Feature", "Reading", "covariance_of", "features_of", "readings", "values_of"]
+__all__ = [
+    "Feature",
+    "Reading",
+    "covariance_of",
+    "features_of",
+    "numerical_factor",
+    "readings",
+    "values_of",
+]
 
 #: Multiples of the mesh whose amplitudes are features.
 _MULTIPLES = (1, 2, 3)
@@ -127,9 +135,9 @@ def covariance_of(
 ) -> NDArray[np.float64]:
     """Return the covariance of features (features, features), of all errors.
 
-    Standard errors of blocks, measured and simulated, and the numerical error that the run states
-    are of each feature by itself; gain and zero of a sensor are the same in all features of its
-    channel, unless they are freed: then they are parameters.
+    Standard errors of blocks, measured and simulated, are of each feature by itself. The numerical
+    error that the run states is a bias, see `numerical_factor`. Gain and zero of a sensor are the
+    same in all features of its channel, unless they are freed: then they are parameters.
 
     Parameters
     ----------
@@ -142,15 +150,13 @@ def covariance_of(
         Nuisances that are free, as pairs of channel and field.
     """
     by_channel = {it.channel: it for it in how}
-    sizes = {it.channel: float(np.sqrt(np.mean(it.measured.values**2))) for it in how}
     simulated = features_of(how, run)
     own = [
-        it.estimate.error**2
-        + other.estimate.error**2
-        + numerical_error(run, it.name, sizes[it.channel]) ** 2
+        it.estimate.error**2 + other.estimate.error**2
         for it, other in zip(found, simulated, strict=True)
     ]
-    covariance: NDArray[np.float64] = np.diag(own)
+    numerical = numerical_factor(how, found, run)
+    covariance: NDArray[np.float64] = np.diag(own) + numerical @ numerical.T
     values = values_of(found)
     for name, reading in by_channel.items():
         among = np.array([it.channel == name for it in found])
@@ -162,3 +168,24 @@ def covariance_of(
             part = np.where(shifted, reading.sensor.bias_uncertainty, 0.0)
             covariance += np.outer(part, part)
     return covariance
+
+
+#: What the numerical error is the same in: one nuisance each.
+_BIASES = ("mean", "std", "p1", "p99", "order")
+
+
+def numerical_factor(
+    how: Sequence[Reading], found: Sequence[Feature], run: xr.Dataset
+) -> NDArray[np.float64]:
+    """Return what a numerical error of one standard deviation moves, (features, biases).
+
+    The error of a step is common to all samples of a record and to all channels: means are moved
+    together by one nuisance, deviations by another, and so on. Its bound is taken for its standard
+    deviation.
+    """
+    sizes = {it.channel: float(np.sqrt(np.mean(it.measured.values**2))) for it in how}
+    factor = np.zeros((len(found), len(_BIASES)))
+    for row, it in enumerate(found):
+        of = _BIASES.index(it.name.split()[0])
+        factor[row, of] = numerical_error(run, it.name, sizes[it.channel])
+    return factor

@@ -16,7 +16,14 @@ from chaindrive.measurement.free import FreeParameter
 from chaindrive.simulation import simulate
 from chaindrive.sweeping import sweep
 
-__all__ = ["Sensitivities", "sensitivities"]
+__all__ = [
+    "CLEAR",
+    "Sensitivities",
+    "as_run",
+    "sensitivities",
+    "settings_for",
+    "starts",
+]
 
 _Floats = NDArray[np.float64]
 
@@ -27,7 +34,7 @@ _STEPS = (0.2, 0.1)
 #: by is noise and bending.
 _PHASES = (0.0, 0.37)
 #: Multiple of that noise from which a difference is taken [–] (assumed).
-_CLEAR = 3.0
+CLEAR = 3.0
 #: Noise in standard errors of a feature below which it does not matter [–] (assumed).
 _QUIET = 0.03
 #: How often the step of the run is shortened for a variant that is stiffer.
@@ -100,7 +107,7 @@ def sensitivities(
     covariance = covariance_of(how, base, run, freed)
     jacobian, noise = np.stack(columns, axis=1), np.stack(noises, axis=1)
     quiet = noise <= _QUIET * np.sqrt(np.diag(covariance))[:, None]
-    clear = ((np.abs(jacobian) > _CLEAR * noise) | quiet).all(axis=1)
+    clear = ((np.abs(jacobian) > CLEAR * noise) | quiet).all(axis=1)
     return Sensitivities(
         np.where(clear[:, None], jacobian, 0.0),
         np.where(clear[:, None], noise, 0.0),
@@ -132,8 +139,8 @@ def _points(
     """Return the runs below and above of every parameter, of every design."""
     middles = {it.path: it.around(_STEPS[0])[1] for it in parameters}
     rows: list[dict[str, float]] = []
-    starts = _starts(drive)
-    for start, step in zip(starts, _STEPS, strict=False):
+    designs = starts(drive)
+    for start, step in zip(designs, _STEPS, strict=False):
         for it in parameters:
             low, high = (middles[it.path] + sign * step * it.half_range for sign in (-1, 1))
             rows += [middles | start | {it.path: low}, middles | start | {it.path: high}]
@@ -146,24 +153,24 @@ def _points(
         every=float(run.attrs["every"]),
         record=recorded,
         progress=tell if tell is not None else False,
-        **_settings(drive, run, rows),
+        **settings_for(drive, run, rows),
     )
     failed = [str(it) for it in found["error"].to_numpy() if it]
     if failed:
         message = f"a variant within the bounds cannot be simulated: {failed[0]}"
         raise SimulationError(message, "free")
-    runs = [_as_run(found.isel(variant=row), run) for row in range(len(rows))]
+    runs = [as_run(found.isel(variant=row), run) for row in range(len(rows))]
     count = len(parameters)
     return {
         it.path: [
             (runs[2 * (design * count + n)], runs[2 * (design * count + n) + 1])
-            for design in range(len(starts))
+            for design in range(len(designs))
         ]
         for n, it in enumerate(parameters)
     }
 
 
-def _starts(drive: Drive) -> list[dict[str, float]]:
+def starts(drive: Drive) -> list[dict[str, float]]:
     """Return what the designs begin with; nothing where a chain has no phase: one design only."""
     route = drive.to_dict().get("route", {})
     if not isinstance(route, Mapping):
@@ -176,7 +183,9 @@ def _starts(drive: Drive) -> list[dict[str, float]]:
     return [{"route.phase": (float(own) + it) % 1.0} for it in _PHASES]
 
 
-def _settings(drive: Drive, run: xr.Dataset, rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+def settings_for(
+    drive: Drive, run: xr.Dataset, rows: Sequence[Mapping[str, Any]]
+) -> dict[str, Any]:
     """Return method and step for all variants: those of the run, shorter where one is stiffer."""
     settings: dict[str, Any] = {"method": run.attrs["method"], "step": float(run.attrs["step"])}
     short: dict[str, Any] = {"until": 1e-4, "run_in": 0, "record": [], "error": False}
@@ -191,7 +200,7 @@ def _settings(drive: Drive, run: xr.Dataset, rows: Sequence[Mapping[str, Any]]) 
     return settings
 
 
-def _as_run(variant: xr.Dataset, run: xr.Dataset) -> xr.Dataset:
+def as_run(variant: xr.Dataset, run: xr.Dataset) -> xr.Dataset:
     """Return a variant of a sweep as a run of its own."""
     kept = [name for name in variant.data_vars if name in run]
     return variant[kept].assign_attrs(run.attrs)

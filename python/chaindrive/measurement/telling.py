@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import xarray as xr
@@ -15,7 +15,7 @@ from chaindrive.plot.units import in_trade
 if TYPE_CHECKING:
     from chaindrive.measurement.comparison import Compared
 
-__all__ = ["as_text", "told_comparison"]
+__all__ = ["as_text", "told_calibration", "told_comparison"]
 
 _WORDS = {
     "mean": "mean",
@@ -141,6 +141,64 @@ def _of_quantity(it: Compared) -> dict[str, Any]:
         ],
         "rows": rows,
         "sentences": sentences,
+    }
+
+
+def told_calibration(found: xr.Dataset, records: Sequence[xr.Dataset]) -> tuple[str, str]:
+    """Return the text of a calibration, and its page as JSON."""
+    of = found.attrs
+    sources = ", ".join(dict.fromkeys(str(it.attrs["measured_from"]) for it in records))
+    names = ("start", "estimate", "lower", "upper", "error", "freedom", "low", "high")
+    rows = [
+        [str(path), *(_number(float(found[name].sel(parameter=path))) for name in names)]
+        for path in found["parameter"].to_numpy()
+    ]
+    words = [f"{it}." for it in of["reasons"]]
+    if "chi2" in of:
+        words.append(
+            f"χ² is {of['chi2']:.3g} of {of['dof']} degrees of freedom"
+            + (f", chance {of['p_value']:.2g}." if of["dof"] > 0 else ": nothing is tested.")
+        )
+        words.append(f"{found.sizes['valley']} optima, of which {of['alike']} explain it alike.")
+    if "validation" in of:
+        words.append(
+            f"The part that was kept {of['validation']}, chance {of['validation_p_value']:.2g}."
+        )
+    words.append(
+        f"All runs: {of['method']}, step {1e6 * of['step']:.3g} µs, "
+        f"run in for {of['run_in']:.3g} s; {of['computed']} computed."
+    )
+    sections: list[dict[str, Any]] = [
+        {
+            "title": f"{of['verdict']}: fit to {sources}",
+            "columns": [
+                *("parameter", "start", "estimate"),
+                *(f"{100 * of['level']:g} % from", "to", "error", "ν", "bound", "bound"),
+            ],
+            "rows": rows,
+            "sentences": words,
+        },
+        _left("what is left", found, "feature", ("measured", "simulated", "feature_error")),
+    ]
+    if "kept_feature" in found.dims:
+        names_kept = ("kept_measured", "kept_simulated", "kept_error")
+        sections.append(_left("the part that was kept", found, "kept_feature", names_kept))
+    return as_text(sections), json.dumps({"sections": sections})
+
+
+def _left(title: str, found: xr.Dataset, dim: str, names: tuple[str, str, str]) -> dict[str, Any]:
+    measured, simulated, error = (found[name].to_numpy() for name in names)
+    rows = [
+        [str(label), *map(_number, (one, other, band, (other - one) / band))]
+        for label, one, other, band in zip(
+            found[dim].to_numpy(), measured, simulated, error, strict=True
+        )
+    ]
+    return {
+        "title": title,
+        "columns": ["feature [SI]", "measured", "fitted", "error", "difference / error"],
+        "rows": rows,
+        "sentences": [],
     }
 
 

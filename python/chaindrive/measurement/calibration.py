@@ -1,0 +1,463 @@
+"""Parameters of a drive from measurements: fitted, with intervals, or refused with a reason."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from os import PathLike
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from chaindrive.drive import Drive, _needed
+from chaindrive.errors import MeasurementError, MeasurementWarning, warn
+from chaindrive.extras import extra
+from chaindrive.measurement.amount import amount
+from chaindrive.measurement.evaluations import RunStore
+from chaindrive.measurement.experiment import Experiment, begun
+from chaindrive.measurement.fitting import Fit, Optimum, Worth, differs
+from chaindrive.measurement.free import FreeParameter, free_parameters, open_to
+from chaindrive.measurement.identifiability import identifiability
+from chaindrive.measurement.provenance import fitted_drive
+from chaindrive.measurement.series import channel_names
+from chaindrive.measurement.telling import told_calibration
+from chaindrive.measurement.validating import Kept, validated
+from chaindrive.progress import told
+from chaindrive.settings import Quantity
+from chaindrive.simulation import simulate
+
+__all__ = ["calibrate"]
+
+_Floats = NDArray[np.float64]
+
+#: Level of the tests for missing physics [–]: so often the right model is refused.
+_LEVEL = 0.01
+#: Share of half a range within which an estimate is at its bound [–].
+_AT_BOUND = 2e-3
+#: Difference of χ² below which two optima explain the record alike [–]: 95 % of one parameter.
+_ALIKE = 3.84
+_LOSSES = ("linear", "soft_l1", "huber", "cauchy", "arctan")
+
+
+class Settled(NamedTuple):
+    """A fit that has ended."""
+
+    fit: Fit
+    optima: list[Optimum]
+    worth: Worth
+    moved: _Floats
+    """What another choice of method, step and run-in moves (p,) [SI]; zero for the same choice."""
+
+
+def calibrate(
+    drive: Drive | Sequence[Drive],
+    data: xr.Dataset | Sequence[xr.Dataset],
+    free: Mapping[str, tuple[Any, Any]],
+    *,
+    priors: Mapping[str, tuple[Any, float]] | None = None,
+    loss: str = "linear",
+    validation: float = 0.25,
+    starts: int = 5,
+    level: float = 0.95,
+    until: Quantity | None = None,
+    shaft: str | None = None,
+    store: str | PathLike[str] | None = None,
+    jobs: int | None = None,
+    progress: bool | Callable[[float], object] = False,
+) -> xr.Dataset:
+    """Fit parameters of a drive to measurements, with intervals of all errors; or refuse.
+
+    ``min Σ ρ(|L⁻¹ (y(θ) − y)|²)`` over bounded θ by SciPy's ``least_squares``, with the features y
+    of the record: means and amplitudes of mesh orders; of channels without an angle means, standard
+    deviations and percentiles. ``C = L Lᵀ`` holds the scatter of blocks, measured and simulated,
+    the sensors' uncertainties, and the numerical error of the run as a bias that all samples share.
+    Method, step, run-in, phase and sampling are chosen at the start and the same for all
+    evaluations, so that differences are of the parameters alone; they are chosen anew at the
+    optimum, and where that differs, there is one more fit.
+
+    Parameters
+    ----------
+    drive
+        The drive, as well as it is known; or a drive for each record.
+    data
+        What `measured` returned; or several records, whose parameters are shared.
+    free
+        Values to be found, by path as `Drive.replace` takes it, each with its lower and upper
+        bound: numbers in SI or texts with a unit. ``sensors.CHANNEL.NUISANCE`` frees gain, bias,
+        drift, delay, corner or integration of a sensor. Whole numbers cannot be freed.
+    priors
+        Mean and standard deviation [SI] of parameters that something else knows of, by path.
+    loss
+        ``"linear"``, or a robust loss of SciPy, ``"soft_l1"``, ``"huber"``, ``"cauchy"`` or
+        ``"arctan"``, to which single features that contradict all others count less.
+    validation
+        Share of the end of each record that is not fitted, but held against the fit [–]; 0 for
+        none.
+    starts
+        Starts over the ranges, at least 1: the best of the drive's own and of a Latin hypercube
+        with twice as many points for each parameter of the scene. 1: the drive's own alone.
+    level
+        Level of the intervals [–].
+    until
+        Length of the runs [s]; that of the fitted part, and at most a second, when absent.
+    shaft
+        Reference shaft, as in `compare`.
+    store
+        Folder in which every run is kept under the bits of its parameters: the same call goes on
+        there, takes the same path and computes nothing twice. In memory when absent.
+    jobs
+        Runs at a time, as in `sweep`; the numbers do not depend on it.
+    progress
+        As in `sweep`; its share is a guess, for nobody knows how many steps a fit takes.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``estimate``, ``error`` (standard), ``lower`` and ``upper`` (of the interval at `level`, by
+        Student's t), ``freedom`` (of its error), ``start``, ``low``, ``high`` [SI] (parameter,);
+        ``covariance`` [SI], ``correlation`` (parameter, parameter_2). ``measured``, ``simulated``,
+        ``feature_error`` [unit of the feature] and ``residual`` (difference over its error)
+        (feature,), and the same of the part that was kept, ``kept_measured`` and so on
+        (kept_feature,). ``optimum`` (valley, parameter) [SI] with ``optimum_chi2`` (valley,).
+        ``eigenvalue`` (direction,) of the information at the start, see `check_data`. Attributes:
+        ``verdict``, ``"calibrated"`` or ``"refused"``, with the ``reasons`` in words; ``chi2``,
+        ``dof``, ``p_value``, ``validation_p_value``; ``method``, ``step`` [s], ``run_in`` [s] of
+        all evaluations; ``computed``, the number of runs that were not in the store; a ``summary``
+        to print and a ``page``. Unless refused, ``scene`` is the drive with the fitted values, and
+        says behind each where it is from: ``chaindrive.load(result)`` makes it a `Drive`. Of
+        several drives it is the first one, and ``scenes`` has all.
+
+    Raises
+    ------
+    MeasurementError
+        A path of `free` leads nowhere or is a whole number, bounds are in the wrong order, or the
+        record tells nothing of the drive.
+    SimulationError
+        A variant within the bounds cannot be simulated.
+
+    Warns
+    -----
+    MeasurementWarning
+        The fit is refused: parameters are not identifiable, which is told before anything is
+        fitted; one ends at a bound; or what is left is more than errors explain, by a test of level
+        1 %, and physics are missing.
+
+    References
+    ----------
+    G. A. F. Seber and C. J. Wild, *Nonlinear Regression*, 1989, ch. 2 and 5.
+    """
+    drives, records = _listed(drive, data)
+    _check(loss, validation, starts, level)
+    keep = RunStore(store)
+    experiments, parameters = _experiments(
+        drives, records, free, (validation, keep, until, shaft, jobs)
+    )
+    known = _priors(priors or {}, parameters)
+    with told(progress, "fit") as tell:
+        steps = _Steps(tell, 12 + starts)
+        fit = Fit(experiments, parameters, known, loss, steps)
+        jacobian, noise = fit.replicated(_inside(fit))
+        fit.designs = 1 + fit.is_noisy(jacobian, noise)
+        fit.refine(jacobian)
+        both, covariance = fit.with_priors(jacobian, fit.errors.covariance)
+        noises = np.zeros_like(both)
+        noises[: len(noise)] = noise
+        before = identifiability(parameters, both, covariance, noises)
+        settled = None
+        if before.is_identified:
+            settled = _settled(fit, starts, (known, loss, steps))
+        reasons = [f"{it.path} moves nothing that this record sees" for it in before.silent] + [
+            f"not identifiable: {words} (scaled eigenvalue {value:.2g}, needed {least:.2g})"
+            for value, least, words in before.combinations
+        ]
+        kept: Kept | None = None
+        if settled is not None:
+            reasons += _reasons(settled)
+            kept = validated(settled.fit, settled.optima[0], settled.worth, _LEVEL)
+    found = _dataset(settled, fit, before.eigenvalues, kept, (reasons, level))
+    found.attrs["computed"] = keep.computed
+    if settled is not None and not reasons:
+        found.attrs |= _scenes(found, settled.fit, records, level)
+    summary, page = told_calibration(found, records)
+    found.attrs |= {"summary": summary, "page": page}
+    if reasons:
+        warn(f"the fit is refused: {'; '.join(reasons)}", MeasurementWarning)
+    return found
+
+
+class _Steps:
+    """Tells how far a fit may be."""
+
+    def __init__(self, tell: Callable[[float], object] | None, expected: int) -> None:
+        self._tell, self._expected, self._done = tell, expected, 0
+
+    def __call__(self) -> None:
+        self._done += 1
+        if self._tell is not None:
+            self._tell(self._done / (self._done + self._expected))
+
+
+def _listed(drive: Any, data: Any) -> tuple[list[Drive], list[xr.Dataset]]:
+    records = [data] if isinstance(data, xr.Dataset) else list(data)
+    drives = [drive] * len(records) if isinstance(drive, Drive) else list(drive)
+    for it in drives:
+        _needed(it)
+    if not records or len(drives) != len(records):
+        message = f"{len(drives)} drives for {len(records)} records"
+        raise MeasurementError(message, "drive", "one drive, or one for each record")
+    return drives, records
+
+
+def _check(loss: str, validation: float, starts: int, level: float) -> None:
+    bounds = (
+        ("loss", loss, loss in _LOSSES, f"one of {', '.join(_LOSSES)}"),
+        ("validation", validation, 0.0 <= validation < 0.9, "in [0, 0.9)"),
+        ("starts", starts, starts >= 1, "at least 1"),
+        ("level", level, 0.0 < level < 1.0, "in (0, 1)"),
+    )
+    for name, value, is_right, allowed in bounds:
+        if not is_right:
+            raise MeasurementError(f"{name} = {value!r}, must be {allowed}", name)
+
+
+def _experiments(
+    drives: Sequence[Drive],
+    records: Sequence[xr.Dataset],
+    free: Mapping[str, tuple[Any, Any]],
+    how: tuple[float, RunStore, Quantity | None, str | None, int | None],
+) -> tuple[list[Experiment], list[FreeParameter]]:
+    """Return one experiment a record, and the parameters that they share."""
+    share, store, until, shaft, jobs = how
+    by_path: dict[str, FreeParameter] = {}
+    found = []
+    for drive, data in zip(drives, records, strict=True):
+        own = _own(drive, data, free, records) if len(records) > 1 else free
+        opened = open_to(drive, own)
+        parameters = free_parameters(opened, data, own) if own or len(records) == 1 else []
+        for it in parameters:
+            by_path.setdefault(it.path, it)
+        found.append((opened, data, parameters))
+    lost = [path for path in free if path not in by_path]
+    if lost:
+        # The first record says what is wrong with it.
+        free_parameters(drives[0], records[0], {path: free[path] for path in lost})
+    order = [by_path[path] for path in free]
+    experiments = [begun(*it, share, store, (until, shaft, jobs)) for it in found]
+    return experiments, order
+
+
+def _own(
+    drive: Drive,
+    data: xr.Dataset,
+    free: Mapping[str, tuple[Any, Any]],
+    records: Sequence[xr.Dataset],
+) -> dict[str, tuple[Any, Any]]:
+    """Return what of several drives and records one drive and record knows."""
+    channels = channel_names(data)
+    elsewhere = {name for it in records for name in channel_names(it)} - set(channels)
+    own = {}
+    for path, bounds in free.items():
+        channel = path.removeprefix("sensors.").rpartition(".")[0]
+        if path.startswith("sensors.") and channel in elsewhere:
+            continue
+        try:
+            free_parameters(open_to(drive, [path]), data, {path: bounds})
+        except MeasurementError:
+            continue
+        own[path] = bounds
+    return own
+
+
+def _priors(
+    priors: Mapping[str, tuple[Any, float]], parameters: Sequence[FreeParameter]
+) -> dict[str, tuple[float, float]]:
+    paths = [it.path for it in parameters]
+    found = {}
+    for path, given in priors.items():
+        if path not in paths:
+            message = f"priors[{path!r}]: it is not free"
+            raise MeasurementError(message, path, f"free are {', '.join(paths)}")
+        if not isinstance(given, list | tuple) or len(given) != 2:
+            message = f"priors[{path!r}] = {given!r} is no pair of mean and standard deviation"
+            raise MeasurementError(message, path)
+        mean, deviation = (amount(it, None, path) for it in given)
+        if not deviation > 0.0:
+            message = f"priors[{path!r}]: the standard deviation is {deviation:g}"
+            raise MeasurementError(message, path, "positive [SI]")
+        found[path] = (mean, deviation)
+    return found
+
+
+def _inside(fit: Fit) -> _Floats:
+    """Return the start, far enough from the bounds for central differences."""
+    return np.array([it.around(0.05)[1] for it in fit.parameters])
+
+
+def _settled(fit: Fit, starts: int, how: tuple[Any, str, Callable[[], object]]) -> Settled:
+    """Fit; choose anew what was frozen; where that differs, fit once more."""
+    optima = fit.optima(starts)
+    known, loss, steps = how
+    again = [_anew(it, fit, optima[0]) for it in fit.experiments]
+    moved = np.zeros(len(fit.parameters))
+    if any(new is not old for new, old in zip(again, fit.experiments, strict=True)):
+        other = Fit(again, fit.parameters, known, loss, steps)
+        other.designs, other.steps = fit.designs, fit.steps
+        last = other.optimum(optima[0].x, is_near=True)
+        moved = last.x - optima[0].x
+        fit, optima = other, [last, *optima[1:]]
+    return Settled(fit, optima, fit.worth(optima[0]), moved)
+
+
+def _anew(experiment: Experiment, fit: Fit, best: Optimum) -> Experiment:
+    """Return an experiment with method, step and run-in as a run of the optimum chooses them."""
+    paths = {it.path for it in experiment.parameters if not it.is_of_sensor}
+    values = {
+        it.path: float(x) for it, x in zip(fit.parameters, best.x, strict=True) if it.path in paths
+    }
+    old = experiment.evaluations
+    drive = experiment.drive.replace(values)
+    of = [
+        *("anew", drive.resolved().text, old.settings["until"], old.settings["every"]),
+        old.settings["record"],
+    ]
+    settings: Any = {name: old.settings[name] for name in ("until", "every", "record")}
+    run = old.store.kept(of, lambda: simulate(drive, **settings))
+    if not differs(experiment.run.attrs, run.attrs):
+        return experiment
+    return replace(experiment, run=run, evaluations=old.beside(run))
+
+
+def _reasons(settled: Settled) -> list[str]:
+    """Return why a fit is refused, in words; none where it stands."""
+    fit, best, worth = settled.fit, settled.optima[0], settled.worth
+    found = []
+    for it, value in zip(fit.parameters, best.x, strict=True):
+        for bound, which in ((it.low, "lower"), (it.high, "upper")):
+            if abs(value - bound) < _AT_BOUND * it.half_range:
+                found.append(
+                    f"{it.path} ends at its {which} bound, {bound:.6g}: widen it, or ask what "
+                    "else is wrong"
+                )
+    if worth.p_value < _LEVEL:
+        size = np.abs(worth.residual) / np.sqrt(np.diag(fit.errors.covariance))
+        largest = np.argsort(np.where(fit.known, size, -1.0))[::-1][:3]
+        where = ", ".join(f"{fit.errors.names[n]} ({size[n]:.1f} errors)" for n in largest)
+        found.append(
+            f"physics are missing: χ² is {worth.chi2:.3g} of {worth.dof} degrees of freedom, "
+            f"chance {worth.p_value:.2g}; most is left in {where}"
+        )
+    return found
+
+
+def _dataset(
+    settled: Settled | None,
+    before: Fit,
+    eigenvalues: _Floats,
+    kept: Kept | None,
+    said: tuple[list[str], float],
+) -> xr.Dataset:
+    reasons, level = said
+    fit = before if settled is None else settled.fit
+    parameters, errors = fit.parameters, fit.errors
+    count = len(parameters)
+    nan = np.full(count, math.nan)
+    one, two = ("parameter",), ("parameter", "parameter_2")
+    estimate, covariance, freedom = nan, np.full((count, count), math.nan), nan
+    residual = np.full(len(errors.names), math.nan)
+    attributes: dict[str, Any] = {
+        "verdict": "refused" if reasons else "calibrated",
+        "reasons": reasons,
+        "level": level,
+        **{key: fit.experiments[0].evaluations.settings[key] for key in ("method", "step")},
+        "run_in": fit.experiments[0].evaluations.settings["run_in"],
+        "designs": fit.designs,
+    }
+    variables: dict[str, Any] = {}
+    if settled is not None:
+        worth, moved = settled.worth, settled.moved
+        estimate, freedom = settled.optima[0].x, worth.freedom
+        # What another choice of method moves is an error of the method.
+        covariance = worth.covariance * np.outer(fit.half, fit.half) + np.outer(moved, moved)
+        residual = worth.residual
+        attributes |= {
+            "chi2": worth.chi2,
+            "dof": worth.dof,
+            "p_value": worth.p_value,
+            "chosen_anew": int(bool(np.any(moved))),
+        }
+        chi2 = [2.0 * it.cost for it in settled.optima]
+        attributes["alike"] = sum(it < chi2[0] + _ALIKE for it in chi2)
+        variables |= {
+            "optimum": (("valley", "parameter"), np.stack([it.x for it in settled.optima])),
+            "optimum_chi2": ("valley", chi2, {"units": "1"}),
+        }
+    error = np.sqrt(np.diag(covariance))
+    t = extra("scipy.stats", "intervals").t.ppf(0.5 + 0.5 * level, np.minimum(freedom, 1e9))
+    deviation = np.sqrt(np.diag(errors.covariance))
+    variables |= {
+        "estimate": (one, estimate),
+        "error": (one, error),
+        "lower": (one, estimate - t * error),
+        "upper": (one, estimate + t * error),
+        "freedom": (one, freedom, {"units": "1"}),
+        "start": (one, [it.start for it in parameters]),
+        "low": (one, [it.low for it in parameters]),
+        "high": (one, [it.high for it in parameters]),
+        "covariance": (two, covariance),
+        "correlation": (two, covariance / np.outer(error, error), {"units": "1"}),
+        "measured": ("feature", errors.values),
+        "simulated": ("feature", errors.values + residual),
+        "feature_error": ("feature", deviation),
+        "residual": ("feature", residual / deviation, {"units": "1"}),
+        "eigenvalue": ("direction", eigenvalues, {"units": "1"}),
+    }
+    coordinates: dict[str, Any] = {
+        "parameter": _texts(it.path for it in parameters),
+        "parameter_2": _texts(it.path for it in parameters),
+        "feature": _texts(errors.names),
+    }
+    if kept is not None:
+        attributes["validation_p_value"] = kept.p_value
+        attributes["validation"] = kept.verdict
+        variables |= {
+            "kept_measured": ("kept_feature", kept.measured),
+            "kept_simulated": ("kept_feature", kept.simulated),
+            "kept_error": ("kept_feature", kept.error),
+            "kept_residual": ("kept_feature", (kept.simulated - kept.measured) / kept.error),
+        }
+        coordinates["kept_feature"] = _texts(kept.names)
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+def _scenes(
+    found: xr.Dataset, fit: Fit, records: Sequence[xr.Dataset], level: float
+) -> dict[str, Any]:
+    """Return the fitted drives as attributes: texts that say where each number is from."""
+    sources = ", ".join(dict.fromkeys(str(it.attrs["measured_from"]) for it in records))
+    # The name of a file is of another's making, and a comment has one line.
+    sources = " ".join(sources.split())
+    scenes = []
+    for experiment in fit.experiments:
+        values, notes = {}, {}
+        for it in experiment.parameters:
+            if it.is_of_sensor:
+                continue
+            row = found.sel(parameter=it.path)
+            values[it.path] = float(row["estimate"])
+            width = 0.5 * float(row["upper"] - row["lower"])
+            notes[it.path] = f"fitted: ± {width:.3g} at {100 * level:g} %, to {sources}"
+        drive = fitted_drive(experiment.drive, values, notes) if values else experiment.drive
+        scenes.append(drive)
+    return {
+        "scene": scenes[0].text,
+        "scene_name": scenes[0].name,
+        "scenes": json.dumps([it.text for it in scenes]),
+    }
+
+
+def _texts(texts: Any) -> Any:
+    return np.asarray(list(texts), dtype=np.str_)
