@@ -11,6 +11,7 @@ import pytest
 
 import chaindrive as cd
 
+TWENTY = "time,b\n" + "".join(f"{n},{n}\n" for n in range(20))
 COUNT = 600
 TIME = np.arange(COUNT) / 1000.0
 LOT = np.random.default_rng(40)
@@ -72,25 +73,25 @@ REFUSED: dict[str, tuple[str, str | bytes | None, dict[str, Any], str]] = {
     ),
     "no such channel": (
         "rig.csv",
-        "time,b\n" + "".join(f"{n},{n}\n" for n in range(20)),
+        TWENTY,
         {"channels": ["torque"]},
         "no channel is named 'torque': there are 'time', 'b'",
     ),
     "no such unit": (
         "rig.csv",
-        "time,b\n" + "".join(f"{n},{n}\n" for n in range(20)),
+        TWENTY,
         {"channels": {"b": {"unit": "furlong"}}},
         "unknown unit `furlong`",
     ),
     "no such field": (
         "rig.csv",
-        "time,b\n" + "".join(f"{n},{n}\n" for n in range(20)),
+        TWENTY,
         {"channels": {"b": {"gian": 2}}},
         "a sensor has no 'gian'",
     ),
     "no such angle": (
         "rig.csv",
-        "time,b\n" + "".join(f"{n},{n}\n" for n in range(20)),
+        TWENTY,
         {"turns": {"driver": {"encoder": "enc", "counts": 4}}},
         "no channel is named 'enc'",
     ),
@@ -102,13 +103,13 @@ REFUSED: dict[str, tuple[str, str | bytes | None, dict[str, Any], str]] = {
     ),
     "a speed in kilograms": (
         "rig.csv",
-        "time,b\n" + "".join(f"{n},{n}\n" for n in range(20)),
+        TWENTY,
         {"turns": {"driver": "300 kg"}},
         "is a mass",
     ),
     "nothing left": (
         "rig.csv",
-        "time,b\n" + "".join(f"{n},{n}\n" for n in range(20)),
+        TWENTY,
         {"start": "15 s"},
         "leave 5 samples",
     ),

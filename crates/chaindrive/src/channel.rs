@@ -170,7 +170,7 @@ impl Channel {
         Self::CarrierForceY,
     ];
 
-    /// Whether a drive has forces that the channel records.
+    /// The drive has forces of this channel.
     fn is_forced(self, drive: &Parts) -> bool {
         match self {
             Self::CentreForceX | Self::CentreForceY => {

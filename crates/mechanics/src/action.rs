@@ -159,14 +159,7 @@ impl Action {
     /// # Errors
     /// [`DriveError::Parameter`] with `name` as the place.
     pub fn check(&self, name: &str, key: &str) -> Result<(), DriveError> {
-        let finite = |what: &str, value: f64| {
-            DriveError::require(
-                value.is_finite(),
-                &format!("{name}.{what}"),
-                value,
-                "finite",
-            )
-        };
+        let finite = |key: &str, value: f64| DriveError::finite(name, key, value);
         match self {
             Self::Constant { value } => finite(key, *value),
             Self::Orders { terms, .. } => terms.iter().try_for_each(|term| term.check(name)),

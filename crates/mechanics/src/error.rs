@@ -71,6 +71,16 @@ impl DriveError {
             allowed,
         })
     }
+
+    /// Refuses a number at `place` under `key` that is not finite.
+    pub(crate) fn finite(place: &str, key: &str, value: f64) -> Result<(), Self> {
+        Self::require(
+            value.is_finite(),
+            &format!("{place}.{key}"),
+            value,
+            "finite",
+        )
+    }
 }
 
 impl DriveError {

@@ -179,14 +179,7 @@ impl Motion {
     /// # Errors
     /// [`DriveError::Parameter`] with `name` as the place.
     pub fn check(&self, name: &str) -> Result<(), DriveError> {
-        let finite = |what: &str, value: f64| {
-            DriveError::require(
-                value.is_finite(),
-                &format!("{name}.{what}"),
-                value,
-                "finite",
-            )
-        };
+        let finite = |key: &str, value: f64| DriveError::finite(name, key, value);
         match self {
             // Courses are checked where they are set.
             Self::Held | Self::Table(_) | Self::SpeedTable(_) | Self::Onward(_) => Ok(()),

@@ -15,9 +15,9 @@ pub struct ForceFacts {
     pub on: String,
     /// Their sum along x and y where the simulation begins \[N\].
     pub at_start: [f64; 2],
-    /// Whether they change with time or an angle.
+    /// True of forces that change with time or an angle.
     pub changes: bool,
-    /// What they do, in words.
+    /// Their effect, in words.
     pub does: &'static str,
 }
 

@@ -42,7 +42,7 @@ pub trait Sink {
         true
     }
 
-    /// Whether it keeps the attributes of the result; otherwise they are empty.
+    /// Attributes of the result are kept; for other sinks they are left empty.
     fn keeps_attributes(&self) -> bool {
         true
     }

@@ -351,7 +351,8 @@ fn clearance_joints_keep_the_tension_with_long_steps() {
     assert!(error < 2.5e-3, "{error}");
 }
 
-/// At 100 rad/s impacts are shorter than a long step, which leaves a tenth of the energy open: the choice goes down the ladder for it.
+/// Impacts at 100 rad/s are shorter than a step of the calm drive, which leaves a tenth of the energy open: the choice takes less than half
+/// of it.
 #[test]
 fn steps_whose_energy_does_not_add_up_are_not_chosen() {
     let step = |scene: &Scene| {
@@ -364,7 +365,7 @@ fn steps_whose_energy_does_not_add_up_are_not_chosen() {
         .unwrap();
     let [calm, fast] = [calm, fast].map(|scene| step(&scene));
     assert!(calm > 8e-6, "{calm}");
-    assert!(fast < 6e-6, "{fast}");
+    assert!(fast < 0.5 * calm, "{fast}");
 }
 
 /// Where the waveform of the motorcycle's tension would allow twice the step, half of its losses would be open.

@@ -265,11 +265,11 @@ fn heavy_impacts_do_not_feed_themselves() {
     assert!(open < 0.05, "{open}");
 }
 
-/// Of the work of the chainring and the losses of contacts belongs to the ledger what the equations of a step add to forces: without it 0.15 is open.
+/// The ledger has what the equations of a step add to the forces: 1.1e-4 of what is supplied stays open, and 1.3e-3 without that.
 #[test]
 fn the_ledger_of_long_steps_closes() {
     let open = open_share(&preset("bicycle"), 10e-3, Some(10e-6));
-    assert!((1e-6..0.04).contains(&open), "{open}");
+    assert!(open < 3e-4, "{open}");
 }
 
 /// The ledger closes with the step, whether the chain is taut or hangs.

@@ -69,6 +69,7 @@ fn losses_that_are_wrong_are_distrusted() {
 /// Defect A5: the chain of a large engine with clearance, joints that rub, and a heavy load. At the step that implicit damping takes by
 /// itself its driver was short by 3 % of its power, one and a half times the losses, because what the equations of a step add to the forces
 /// was not in the works. Generalized alpha, whose forces are those of its own midpoint, is the authority: 280 J, as steps of 1 µs have them.
+/// Implicit damping loses 4.7 % more at its step of 18.5 µs, by the friction of pins.
 #[test]
 fn losses_and_power_of_a_large_chain_with_joints_that_rub_are_right() {
     let large = Scene::from_toml(

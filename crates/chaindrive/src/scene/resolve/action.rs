@@ -10,7 +10,7 @@ use super::ends::Ends;
 use super::motion::{orders, table};
 use crate::scene::schema;
 
-/// What acts over time or an angle, as a scene writes it.
+/// A torque or force over time or an angle, in the words of a scene.
 enum ActionText<'t, V> {
     Constant(V),
     Ramp(V, Time, Time),
@@ -20,7 +20,7 @@ enum ActionText<'t, V> {
     AngleTable(Option<&'t String>, u32, &'t [Angle], &'t [V]),
 }
 
-/// What messages call it: the value, the key of its table, its unit.
+/// Names for messages: of the value, of the key of its table, of its unit.
 struct Words {
     value: &'static str,
     table: &'static str,
