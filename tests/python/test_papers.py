@@ -85,3 +85,46 @@ def test_the_offset_of_a_span_is_its_sag(papers):
     sag = across * length**2 / (8.0 * tension)
     found = drive_of.offset(drive, drive_of.TIGHT, run)[0]
     assert found == pytest.approx(sag, rel=0.15)
+
+
+def test_a_span_of_waves_is_parted_by_frequency(papers):
+    """Root mean squares of two sines, one below half the mesh frequency and one above."""
+    drive_of = papers("marine_drive")
+    time = drive_of.EVERY * np.arange(5000)
+    mesh = drive_of.TEETH * drive_of.SPEED / 60.0
+    wave = 3e-3 * np.sin(2.0 * np.pi * 12.0 * time) + 1e-3 * np.sin(2.0 * np.pi * mesh * time)
+    found = drive_of.by_frequency(wave)
+    assert found["slow"] == pytest.approx(3e-3 / np.sqrt(2.0), rel=1e-3)
+    assert found["fast"] == pytest.approx(1e-3 / np.sqrt(2.0), rel=1e-3)
+
+
+def test_bars_of_all_shapes_are_equally_near(papers):
+    """5 mm from the rollers of a straight span, of all four faces, at their nearest place."""
+    bars = papers("marine_bars")
+    drive = papers("marine_drive").paper()
+    bar = bars.BARS[0]
+    line = bars.Line(drive, bar)
+    places = np.array([line.place(share, 0.0) for share in np.linspace(0.0, 1.0, 801)])
+    for name, shape in bars.SHAPES.items():
+        profile = bars.with_bars(drive, shape).profile(bar, settled=False)
+        nearest = float(profile.distance(places).min())
+        assert nearest == pytest.approx(bars.CLEAR, abs=0.1e-3), name
+
+
+def test_a_driver_that_swings_loses_no_tooth(papers):
+    """Reversals five times a second, an idler on which few teeth bear: the ledger closes."""
+    far, length = papers("far_swings"), papers("marine_drive").Length(0.1, 0.1)
+    found = far.measure_swing(far.swinging(far.WIDEST), length)
+    assert found["one"] > 0.5
+    assert found["none"] + found["one"] + found["two"] == pytest.approx(1.0)
+    assert found["apart"] < 0.1
+    assert found["residual"] < 1e-3
+
+
+def test_a_life_is_the_integral_of_slowness(papers):
+    """t = ∫ dε/(a − b ε) = ln[a/(a − b ε)]/b."""
+    grown = np.linspace(0.0, 0.01, 401)
+    rate = 2e-6 - 1e-4 * grown
+    hours = papers("life").over_life(grown, rate)
+    assert hours[-1] == pytest.approx(np.log(2e-6 / rate[-1]) / 1e-4, rel=1e-6)
+    assert hours[0] == 0.0
