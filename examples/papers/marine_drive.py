@@ -155,7 +155,7 @@ def beside(drive: cd.Drive, span: str, run: xr.Dataset) -> tuple[np.ndarray, np.
 def offset(drive: cd.Drive, span: str, run: xr.Dataset) -> np.ndarray:
     """Return the offset of the middle of a span from its straight line, outward [m], (time,)."""
     s, y, _ = beside(drive, span, run)
-    near = np.abs(y) < 2.0 * PITCH
+    near = np.abs(y) < 2.0 * drive.resolved().to_dict()["chain"]["pitch"]
     before = np.where(near & (s <= 0.0), s, -np.inf).argmax(axis=1)
     after = np.where(near & (s > 0.0), s, np.inf).argmin(axis=1)
     rows = np.arange(len(s))
@@ -209,13 +209,15 @@ def measure(drive: cd.Drive, length: Length) -> dict[str, Any]:
     return found
 
 
-def by_frequency(swing: np.ndarray) -> dict[str, Any]:
+def by_frequency(
+    swing: np.ndarray, every: float = EVERY, mesh: float = TEETH * SPEED / 60.0
+) -> dict[str, Any]:
     """Return the root mean square of a swing below half the mesh frequency, and above it [m].
 
     With its spectrum, `level`, whose lines are root mean squares as well.
     """
-    frequency, level = spectrum(swing, EVERY)
-    low = frequency < 0.5 * TEETH * SPEED / 60.0
+    frequency, level = spectrum(swing, every)
+    low = frequency < 0.5 * mesh
     # A line under a Hann window spreads over others: the squares sum to 1.5 of its own.
     slow, fast = (float(np.sqrt((level[it] ** 2).sum() / 1.5)) for it in (low, ~low))
     return {"slow": slow, "fast": fast, "level": level}

@@ -128,3 +128,39 @@ def test_a_life_is_the_integral_of_slowness(papers):
     hours = papers("life").over_life(grown, rate)
     assert hours[-1] == pytest.approx(np.log(2e-6 / rate[-1]) / 1e-4, rel=1e-6)
     assert hours[0] == 0.0
+
+
+def test_what_rigid_bodies_leave_out_is_computed_right():
+    """The table of beams in docs/models.md: every figure by its formula."""
+    text = (ROOT / "docs" / "models.md").read_text(encoding="utf-8")
+    rows = text.partition("## Bodies that yield")[2].partition("## Which of these matter")[0]
+    young, shear = 210e9, 80e9
+
+    def round_bar(diameter):
+        return math.pi * diameter**4 / 64.0
+
+    # A bar between its bolts, and one that is held at its ends, in mm under 62 and 850 N.
+    bar = young * 0.1 * 0.02**3 / 12.0
+    sags = [
+        1e3 * force * reach**3 / (48.0 * bar) for reach in (0.5, 1.58) for force in (62.0, 850.0)
+    ]
+    camshaft = 48.0 * young * round_bar(0.2)
+    twist = 2.0 * shear * round_bar(0.2) / 6.0
+    a, b, reach = 25e-3, 110e-3, 135e-3
+    axle = 3.0 * young * round_bar(10e-3) * reach / (a * b) ** 2
+    tooth = [
+        5.3e3 * 0.01**3 / (3.0 * young * 0.05 * 0.035**3 / 12.0),
+        64.0 * 0.002**3 / (3.0 * young * 3e-3 * 4.95e-3**3 / 12.0),
+    ]
+    plates = young * 27e-3 * 77.8e-3**3 / 12.0
+    link = 850.0 * 88.9e-3**3 / (48.0 * plates)
+    told = [
+        f"{1e3 * sags[0]:.0f} µm under 62 N, {sags[1]:.2f} mm",
+        f"{sags[2]:.1f} and {sags[3]:.0f} mm",
+        f"{10 * round(camshaft / 1e7)} MN/m: {1e6 * 26e3 / camshaft:.0f} µm under 26 kN",
+        f"{1e-6 * twist:.1f} MN m/rad",
+        f"{1e-6 * axle:.1f} MN/m: {1e6 * 220.0 / axle:.0f} µm under 220 N",
+        f"{1e6 * tooth[0]:.2f} µm under 5.3 kN; {1e6 * tooth[1]:.2f} µm under 64 N",
+        f"{1e6 * link:.2f} µm under 850 N",
+    ]
+    assert [it for it in told if it not in rows] == []
