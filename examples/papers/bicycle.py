@@ -4,7 +4,7 @@ Draws every comparison that "Contact mechanics in a roller chain drive using a m
 makes on the chain of a bicycle, each with five replicates and a verdict.
 
 Run it as ``python examples/papers/bicycle.py [--until SECONDS] [--results FOLDER]``. With the
-default of 0.08 s a run it takes some four minutes on two cores.
+default of 0.08 s a run it takes some five minutes on two cores.
 """
 
 import argparse

@@ -164,3 +164,42 @@ def test_what_rigid_bodies_leave_out_is_computed_right():
         f"{1e6 * link:.2f} µm under 850 N",
     ]
     assert [it for it in told if it not in rows] == []
+
+
+def test_a_jockey_on_an_arm_a_bar_and_free_rollers_in_one_drive(papers):
+    """106 links, 25 µm of play, rollers as bodies: the bar bears, the ledger closes."""
+    spans = papers("bicycle_spans")
+    length = papers("marine_drive").Length(6e-3, 0.0)
+    found, run = spans.all_parts(spans.whole(), length)
+    assert run.sizes["roller"] == run.sizes["joint"] == 106
+    assert found["bar"] > 0.1
+    assert 0.0 < found["arm"] < 0.01
+    assert found["residual"] < 2.5e-4
+
+
+def test_a_span_of_the_bicycle_is_a_string(papers):
+    """The first frequency that the description of the drive tells of the upper span at rest."""
+    spans = papers("bicycle_spans")
+    drive = spans.cd.scenes.bicycle()
+    assert spans.first_frequency(drive, 175.9) == pytest.approx(26.47, rel=2e-3)
+
+
+@pytest.mark.parametrize("alike", [((11.25, 11.25), (1, 21.5)), ((50, 50), (10, 90))])
+def test_the_cylindrical_law_knows_the_sum_of_radii_only(papers, alike):
+    law = papers("bicycle_law")
+    depth = law.depths(1.0)
+    one, other = (law.error(law.outside(*radii), depth) for radii in alike)
+    assert one == pytest.approx(other, abs=1e-9)
+    assert abs(one).max() > 0.05
+
+
+def test_the_cylindrical_law_is_near_to_johnsons_where_the_page_says(papers):
+    """12 % outside, and in clearances from 25 µm to 2 mm; a half at the ends of its range."""
+    law = papers("bicycle_law")
+    outside = [law.error(law.outside(a, a), law.depths(1.0)) for a in np.geomspace(2, 150, 25)]
+    assert max(abs(it).max() for it in outside) < 0.125
+    plays = np.geomspace(0.025, 2.0, 25)
+    inside = [law.error(law.inside(10.0, it), law.depths(1e-3 * it)) for it in plays]
+    assert max(abs(it).max() for it in inside) < 0.125
+    ends = [law.error(law.inside(10.0, it), law.depths(1e-3 * it)).min() for it in (0.005, 10.0)]
+    assert max(ends) < -0.4
