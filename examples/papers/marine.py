@@ -17,7 +17,7 @@ import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from far_swings import swings
-from impulses import impulses
+from impulses import impulses, teeth_and_speed
 from life import Life, life
 from marine_bars import shapes, spans_between_bars
 from marine_drive import (
@@ -340,6 +340,7 @@ PARTS: Mapping[str, Callable[[Page, Length], None]] = {
     "vibration": vibration,
     "models": models,
     "impulses": impulses,
+    "teeth": teeth_and_speed,
     "swings": swings,
     "life": wear,
 }
