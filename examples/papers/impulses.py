@@ -120,8 +120,8 @@ def equal_sprockets(teeth: int, speed: float = SPEED) -> cd.Drive:
 
 def teeth_and_speed(page: Page, length: Length) -> None:
     """Hold levels of impulses over the number of teeth and over the speed."""
-    short = Length(0.3 * length.until, 0.4 * length.run_in)
-    blocks = 4 if length.until >= 0.5 else 1
+    short = Length(max(0.3 * length.until, 0.03), 0.4 * length.run_in)
+    blocks = 4 if length.until >= 0.5 else 2
     few = replicates(equal_sprockets(17), short)
     compared = [
         Comparison("25 teeth", replicates(equal_sprockets(25), short), few, "17 teeth", blocks),
