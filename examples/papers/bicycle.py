@@ -459,9 +459,9 @@ def wear(page: Page, length: Length) -> None:
     new = cd.scenes.bicycle().replace({"chain.model": "particles"})
     takes_up = {"kind": "sprocket", "name": "rear", "direction": [-1, 0], "within": "30 mm"}
     states = {0.0: new} | {it: cd.worn(new, it, take_up=takes_up) for it in (0.0075, 0.015)}
-    # Two circuits of the chain, and some more; a quarter of one for the joints with play.
+    # Two circuits of the chain, and some more; a sixth of one for the joints with play.
     longer = Length(40.0 * length.until, 2.5 * length.run_in)
-    short = Length(5.0 * length.until, 2.5 * length.run_in)
+    short = Length(3.0 * length.until, 1.5 * length.run_in)
     play = {"new, pins with play": (cd.scenes.bicycle(), short, ["joint_angle", "joint_force"])}
     life(page, "life", Life("`bicycle`", states, longer, 1e-3, ("N", 1.0), play))
 

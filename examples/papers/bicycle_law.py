@@ -59,9 +59,9 @@ def depths(clearance: float) -> np.ndarray:
 
 
 def cost(law: cd.Law, depth: np.ndarray) -> float:
-    """Return the time of a force and its slope, the least of fifty goes [ns]."""
+    """Return the time of a force and its slope, the least of twenty-five goes [ns]."""
     rate = np.zeros_like(depth)
-    goes = timeit.repeat(lambda: law.respond(depth, rate), number=1, repeat=50)
+    goes = timeit.repeat(lambda: law.respond(depth, rate), number=1, repeat=25)
     return 1e9 * min(goes) / depth.size
 
 
