@@ -10,7 +10,7 @@ from page import Page
 PROBE = """
 import re, sys
 import chaindrive as cd
-drive = cd.scenes.marine_two_sprockets()
+drive = cd.scenes.marine_two_sprockets().replace({"run.run_in": 0})
 until, output, record = float(sys.argv[1]), sys.argv[2], sys.argv[3].split(",")
 options = {"output": output} if output else {}
 options |= {"until": until, "every": 2e-4, "record": record, "method": "auto", "error": False}

@@ -4,6 +4,7 @@ import matplotlib.pyplot as plt
 
 import chaindrive as cd
 from page import Page
+from stepping import at_once
 
 
 def report(page: Page) -> None:
@@ -26,6 +27,7 @@ def report(page: Page) -> None:
     )
     for (name, drive), axis in zip(drives.items(), axes[0], strict=True):
         options = {"methods": "verlet", "until": 2e-3} if page.quick else {"replicates": 1}
-        cd.plot.work_precision(cd.work_precision(drive, repeats=1, **options), ax=axis)
+        table = cd.work_precision(at_once(drive), repeats=1, **options)
+        cd.plot.work_precision(table, ax=axis)
         axis.set_title(name, fontsize=9)
     page.figure(figure, "work_precision", "Error against time of the methods")

@@ -22,9 +22,11 @@ def report(page: Page) -> None:
         drive, methods=chosen["method"], steps=steps, until=window, repeats=1, replicates=1
     )
     errors = table["error_tight_span_tension"].values
+    kept = {"method": chosen["method"], "step": chosen["step"]}
+    stretch = Stretch(drive, page.quick, run_in=float(chosen["run_in"]), **kept)
     found = in_turn(
         page.yardstick,
-        {"bicycle": Stretch(drive, page.quick, method=chosen["method"], step=chosen["step"]).time},
+        {"bicycle": stretch.time},
         page.pairs,
     )["bicycle"]
     # Simulated over processor time: h / (t n) with the time t of a link and step, n links.

@@ -12,7 +12,7 @@ import chaindrive as cd
 from features import frictionless
 from page import Page
 from presets import found_error
-from stepping import Pairs, Stretch, in_turn
+from stepping import Pairs, Stretch, at_once, in_turn
 from yardstick import QUIET
 
 
@@ -32,6 +32,7 @@ class Asked:
 
 def ask(page: Page, drive: cd.Drive, until: float, **settings: Any) -> Asked:
     """Simulate with the default choice, and prepare the timing of its stepping."""
+    drive = at_once(drive)
     until = 0.02 * until if page.quick else until
     before = page.yardstick.time()
     begin = process_time()
@@ -56,7 +57,7 @@ def report(page: Page) -> None:
         "Simulated over processor time with the default choice of method and step and an accuracy "
         "of 1 %, as it would be where the yardstick takes its quiet time: stepping alone, medians "
         f"of {page.pairs} pairs; and the whole call once, with assembly, trials, samples and "
-        "estimate.",
+        "estimate, without a run-in.",
     )
     marine, two = cd.scenes.marine_engine_bare(), cd.scenes.marine_two_sprockets()
     bicycle, timing = cd.scenes.bicycle(), cd.scenes.timing_drive()
@@ -137,7 +138,7 @@ def statistics(page: Page, run: xr.Dataset, drive: cd.Drive) -> None:
 
     def replicates(**method: Any) -> np.ndarray:
         twins = (15e3 * (1 + 1e-9 * twin) for twin in range(10))
-        drives = (drive.replace({"route.pretension": pretension}) for pretension in twins)
+        drives = (at_once(drive).replace({"route.pretension": it}) for it in twins)
         return np.array([account(cd.simulate(near, **method, **settings)) for near in drives])
 
     found, exact = replicates(**chosen), replicates(**finer)

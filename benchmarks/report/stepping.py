@@ -15,15 +15,23 @@ from yardstick import QUIET, Yardstick
 PARTICLES, RIGID_LINKS = 5e6, 5e5
 
 
+def at_once(drive: cd.Drive) -> cd.Drive:
+    """Return the drive without a run-in: what is measured begins with the first step."""
+    return drive.replace({"run.run_in": 0})
+
+
 class Stretch:
     """The first stretch of the motion of a drive, stepped again and again.
 
     It begins from one snapshot, so that every repetition takes the same steps; assembly and samples
     are not timed. Without further settings the method and step are those of a simulation that
-    nobody asked for an accuracy.
+    nobody asked for an accuracy. It begins after a run-in [s], where one is given.
     """
 
-    def __init__(self, drive: cd.Drive, quick: bool = False, **settings: Any) -> None:
+    def __init__(
+        self, drive: cd.Drive, quick: bool = False, run_in: float = 0.0, **settings: Any
+    ) -> None:
+        drive = drive.replace({"run.run_in": run_in})
         settings = {"method": "auto"} | settings
         instant = {"until": 1e-9, "every": 1e-9, "record": "energy_residual", "error": False}
         chosen = cd.simulate(drive, **instant, **settings).attrs

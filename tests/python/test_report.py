@@ -70,15 +70,12 @@ def test_what_was_not_measured_now_says_when_it_was(page):
 
 
 @pytest.mark.slow
-def test_registers_that_this_processor_does_not_take_are_told_as_of_when(page):
+def test_every_set_of_registers_is_measured_or_told_to_be_missing(page):
     _, text = page
-    stored = json.loads((REPORT / "older_registers.json").read_text(encoding="utf-8"))
-    assert list(stored) == ["AVX-512", "AVX2", "SSE2"]
-    for kind, row in stored.items():
-        told = next(line for line in text.splitlines() if line.startswith(f"| {kind} |"))
-        assert f"| {row['ratio']:.2f} | {row['scatter']} | {row['machine']['library']} |" in told
-        assert f"**Not measured now**; as of {row['machine']['date'][:10]}" in text
-        assert f"commit {row['machine']['commit']};" in text
+    for kind in ("avx512", "avx2", "sse2"):
+        row = next(line for line in text.splitlines() if line.startswith(f"| {kind} |"))
+        time = row.split("|")[2].strip()
+        assert time == "not on this processor" or float(time) > 0.0
 
 
 @pytest.fixture

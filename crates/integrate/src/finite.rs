@@ -29,6 +29,12 @@ impl Watch {
         }
     }
 
+    /// Takes in what another saw.
+    #[inline(always)]
+    pub(crate) fn take(&mut self, other: Self) {
+        self.0 |= other.0;
+    }
+
     /// Whether all values seen were finite.
     #[inline]
     pub(crate) fn all_finite(self) -> bool {

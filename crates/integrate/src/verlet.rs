@@ -75,12 +75,12 @@ impl Verlet {
             flow,
         };
         system.evaluate_predicted(end, prediction, &mut to.a, &mut to.rates, record);
-        let mut watch = self.registers.dispatch(kick(h, from, &to.a, &mut to.v));
-        // The trapezoidal rule: y⁺ = y + ½ h (r + r⁺)
-        for (i, y) in to.quadratures.iter_mut().enumerate() {
-            *y = from.quadratures[i] + 0.5 * h * (from.rates[i] + to.rates[i]);
-            watch.see(*y);
-        }
+        // Quadratures go on as velocities do: y⁺ = y + ½ h (r + r⁺)
+        let moved = kick(h, &from.v, [&from.a, &to.a], &mut to.v);
+        let mut watch = self.registers.dispatch(moved);
+        let rates = [&from.rates[..], &to.rates[..]];
+        let counted = kick(h, &from.quadratures, rates, &mut to.quadratures);
+        watch.take(self.registers.dispatch(counted));
         let flows = flow.iter().zip(&to.rates[to.quadratures.len()..]);
         for ((z, before), (r0, r1)) in to.z.iter_mut().zip(&from.z).zip(flows) {
             // z⁺ = z + ½ h (ż + ż⁺)
@@ -122,18 +122,17 @@ kernel!(
 );
 
 kernel!(
-    /// Velocities. Infinity and NaN show in the sum of 0 × everything.
+    /// Velocities by the trapezoidal rule, from their rates at both ends. Infinity and NaN show in the sum of 0 × everything.
     fn kick<'a, S: Simd>(
         simd: S,
         h: f64,
-        from: &'a State,
-        a: &'a [f64],
+        from: &'a [f64],
+        rates: [&'a [f64]; 2],
         v: &'a mut [f64],
     ) -> Watch {
         let n = v.len();
-        let (v0, v1) = S::as_simd_f64s(&from.v[..n]);
-        let (a0, a1) = S::as_simd_f64s(&from.a[..n]);
-        let (b0, b1) = S::as_simd_f64s(&a[..n]);
+        let (v0, v1) = S::as_simd_f64s(&from[..n]);
+        let [(a0, a1), (b0, b1)] = rates.map(|rates| S::as_simd_f64s(&rates[..n]));
         let (v, v_rest) = S::as_mut_simd_f64s(v);
         let [zero, half] = [0.0, 0.5 * h].map(|x| simd.splat_f64s(x));
         let plus = |a, x, y| simd.add_f64s(simd.mul_f64s(a, x), y);

@@ -151,7 +151,10 @@ impl Bodies {
         let [mut squared, predicted] = self.rates;
         let mut damping = predicted;
         for (turn, resists) in self.resisted().zip(resisting) {
-            if let Some((dof, ratio)) = turn.turned_by() {
+            // Most have no losses.
+            if *resists > 0.0
+                && let Some((dof, ratio)) = turn.turned_by()
+            {
                 damping = damping.max(ratio * ratio * resists / self.inertia(dof));
             }
         }

@@ -37,6 +37,15 @@ pub(crate) const fn padded(n: usize) -> usize {
 #[inline(never)]
 pub(crate) fn rarely() {}
 
+/// The instructions of one kind of processor, for code that is compiled for that kind; seen when it is compiled.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn kind<S: Simd, Kind: Copy + 'static>(simd: S) -> Option<Kind> {
+    (&simd as &dyn std::any::Any)
+        .downcast_ref::<Kind>()
+        .copied()
+}
+
 /// The processor's vector unit: makes lanes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wide<S: Simd>(pub(crate) S);
@@ -248,7 +257,7 @@ impl<S: Simd> Lane<S> {
     #[inline(always)]
     fn estimate(self) -> Option<Self> {
         #[cfg(target_arch = "x86_64")]
-        if let Some(v4) = (&self.simd as &dyn std::any::Any).downcast_ref::<pulp::x86::V4>() {
+        if let Some(v4) = kind::<S, pulp::x86::V4>(self.simd) {
             let x: pulp::f64x8 = pulp::bytemuck::cast(self.v);
             let estimate: pulp::f64x8 = pulp::cast(v4.avx512f._mm512_rsqrt14_pd(pulp::cast(x)));
             return Some(self.with(pulp::bytemuck::cast(estimate)));
@@ -277,11 +286,10 @@ impl<S: Simd> Lane<S> {
     #[inline(always)]
     pub(crate) fn times_plus(self, factor: Self, term: Self) -> Self {
         #[cfg(target_arch = "x86_64")]
+        if kind::<S, pulp::x86::V4>(self.simd).is_some()
+            || kind::<S, pulp::x86::V3>(self.simd).is_some()
         {
-            let kind = &self.simd as &dyn std::any::Any;
-            if kind.is::<pulp::x86::V4>() || kind.is::<pulp::x86::V3>() {
-                return self.fused(factor, term);
-            }
+            return self.fused(factor, term);
         }
         self * factor + term
     }
@@ -325,6 +333,30 @@ impl<S: Simd> Lane<S> {
     /// The lanes one further on: first the last of `before`, then all but the last of `self`.
     #[inline(always)]
     pub(crate) fn after(self, before: Self) -> Self {
+        // One or two instructions where the processor has them: the library rotates both, and puts them together.
+        #[cfg(target_arch = "x86_64")]
+        {
+            if let Some(v4) = kind::<S, pulp::x86::V4>(self.simd) {
+                let [here, there] = [self.v, before.v].map(|v| {
+                    let eight: pulp::f64x8 = pulp::bytemuck::cast(v);
+                    pulp::cast(eight)
+                });
+                let shifted = v4.avx512f._mm512_alignr_epi64::<7>(here, there);
+                let shifted: pulp::f64x8 = pulp::cast(shifted);
+                return self.with(pulp::bytemuck::cast(shifted));
+            }
+            if let Some(v3) = kind::<S, pulp::x86::V3>(self.simd) {
+                let [here, there] = [self.v, before.v].map(|v| {
+                    let four: pulp::f64x4 = pulp::bytemuck::cast(v);
+                    pulp::cast(four)
+                });
+                // The last two before and the first two here; then each with the one after it.
+                let middle = v3.avx._mm256_permute2f128_pd::<0x21>(there, here);
+                let shifted = v3.avx._mm256_shuffle_pd::<0b0101>(middle, here);
+                let shifted: pulp::f64x4 = pulp::cast(shifted);
+                return self.with(pulp::bytemuck::cast(shifted));
+            }
+        }
         // Not a closure over both: one that is not inlined is compiled for the oldest processor.
         let here = self.with(self.simd.rotate_right_f64s(self.v, 1));
         let there = self.with(self.simd.rotate_right_f64s(before.v, 1));
@@ -375,7 +407,7 @@ impl<S: Simd> Mask<S> {
         }
         // AVX2 collects the signs of its lanes in one instruction; the library looks at one after the other.
         #[cfg(target_arch = "x86_64")]
-        if let Some(v3) = (&self.simd as &dyn std::any::Any).downcast_ref::<pulp::x86::V3>() {
+        if let Some(v3) = kind::<S, pulp::x86::V3>(self.simd) {
             let lanes: pulp::f64x4 = pulp::bytemuck::cast(self.m);
             return v3.avx._mm256_movemask_pd(pulp::cast(lanes)) != 0;
         }

@@ -58,6 +58,7 @@ pub(in crate::chains) fn torques<S: Simd>(
         rate,
         tension,
         across,
+        ..
     } = turning;
     // The link before the first joint is the last one.
     if links.closed {

@@ -40,14 +40,16 @@ impl<S: Simd> Pulls<S> for Springs<'_, S> {
     }
 }
 
-/// Directions and tensions of the links: work space, filled anew by every evaluation.
+/// Lengths, directions and tensions of the links: work space, filled anew by every evaluation.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Turning {
-    /// Turning of the links \[rad/s\], from entry [`LANES`] on.
+    /// Turning of the links \[rad/s\], from entry [`LANES`] on; where joints resist.
     pub(in crate::chains) rate: Array,
     /// Tension of the links \[N\], likewise.
     pub(in crate::chains) tension: Array,
-    /// n/ℓ of the links \[1/m\].
+    /// 1/ℓ of the links \[1/m\].
+    pub(in crate::chains) inverse: Array,
+    /// n/ℓ of the links \[1/m\], where joints resist, as turning and tension.
     pub(in crate::chains) across: [Array; 2],
 }
 
@@ -91,7 +93,7 @@ impl Links {
     }
 
     /// Sets the accelerations of the rollers to gravity and the links' pulls, and returns the
-    /// power \[W\] lost in the dampers. Where joints resist, the links write down how they turn and pull.
+    /// power \[W\] lost in the dampers. Links write down how long they are; where joints resist, how they turn and pull.
     #[inline(always)]
     pub(crate) fn act<S: Simd, const ARTICULATED: bool>(
         &self,
@@ -128,6 +130,7 @@ impl Links {
         let [gx, gy] = gravity.map(|g| w.splat(g));
         let zero = w.splat(0.0);
         let (mut loss, mut before) = (zero, [zero; 2]);
+        turning.inverse.resize(n, 0.0);
         // Joints that resist ask for the turning and the tension of every link; other chains write none of it.
         let written = if ARTICULATED {
             turning.make_room(self);
@@ -143,6 +146,7 @@ impl Links {
             }
         });
         let (mut turns, mut pulls) = (Wide::<S>::lanes_mut(turns), Wide::<S>::lanes_mut(pulls));
+        let mut inverses = Wide::<S>::lanes_mut(&mut turning.inverse);
         let [across_x, across_y] = &mut turning.across;
         let mut across =
             [across_x, across_y].map(|values| Wide::<S>::lanes_mut(&mut values[..written]));
@@ -155,6 +159,7 @@ impl Links {
             // Length by one estimate of the inverse root, which the pull needs as well.
             let square = (dx * dx).plus(dy, dy);
             let inverse = square.inverse_root();
+            inverses.set(i, inverse);
             let length = square * inverse;
             // ℓ̇ = d·u/ℓ
             let rate = (dx * ux).plus(dy, uy) * inverse;
@@ -186,20 +191,28 @@ impl Links {
         loss.sum()
     }
 
-    /// Tension of every link \[N\], whole lanes; x, y and their rates are rows of the rollers.
+    /// Tension of every link \[N\], whole lanes; x, y and their rates are rows of the rollers, which are where the last evaluation
+    /// found them.
     #[inline(always)]
-    fn pull<S: Simd>(&self, w: Wide<S>, columns: [&[f64]; 4], tensions: &mut [f64]) {
+    fn pull<S: Simd>(
+        &self,
+        w: Wide<S>,
+        columns: [&[f64]; 4],
+        turning: &Turning,
+        tensions: &mut [f64],
+    ) {
         let n = self.rest.len();
         let own = [&self.rest, &self.stiffness, &self.damping];
         let [rest, stiffness, damping] = own.map(|values| w.lanes(&values[..n]));
         let [x, y, vx, vy] = columns.map(|values| w.lanes(&values[..n]));
         let [x_next, y_next, vx_next, vy_next] = columns.map(|values| w.lanes(&values[1..=n]));
+        let inverses = w.lanes(&turning.inverse[..n]);
         let mut tensions = Wide::<S>::lanes_mut(&mut tensions[..n]);
         for i in 0..n / Wide::<S>::COUNT {
             let [dx, dy] = [x_next.get(i) - x.get(i), y_next.get(i) - y.get(i)];
             let [ux, uy] = [vx_next.get(i) - vx.get(i), vy_next.get(i) - vy.get(i)];
             let square = (dx * dx).plus(dy, dy);
-            let inverse = square.inverse_root();
+            let inverse = inverses.get(i);
             // T = k (ℓ − p) + d ℓ̇
             let stretch = square * inverse - rest.get(i);
             let drag = damping.get(i) * (dx * ux).plus(dy, uy) * inverse;
@@ -231,8 +244,9 @@ kernel!(
         w: Wide<S>,
         links: &'a Links,
         columns: [&'a [f64]; 4],
+        turning: &'a Turning,
         tensions: &'a mut [f64],
     ) {
-        links.pull(w, columns, tensions);
+        links.pull(w, columns, turning, tensions);
     }
 );
