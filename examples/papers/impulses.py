@@ -94,6 +94,48 @@ def impulses(page: Page, length: Length) -> None:
     page.save(figure, "impulses")
 
 
+SPEED, PULL = 2.0, 500.0  # of the chain [m/s], beside that of the pretension [N]
+
+
+def equal_sprockets(teeth: int, speed: float = SPEED) -> cd.Drive:
+    """Return a chain 08B-1 on two sprockets of so many teeth, at a speed [m/s] and a pull."""
+    pitch = 12.7e-3
+    radius = 0.5 * pitch / np.sin(np.pi / teeth)
+    wheel = {"teeth": teeth, "centre": [0.3, 0.0], "inertia": 0.01}
+    load = [{"kind": "constant", "torque": -PULL * radius}]
+    motion = {"kind": "constant", "speed": 2.0 * np.pi * speed / (teeth * pitch)}
+    move = {"kind": "sprocket", "name": "driven", "direction": [1, 0], "within": "10 mm"}
+    return cd.Drive.from_dict(
+        {
+            "chain": {"type": "08B-1"},
+            "sprockets": [
+                {"name": "driver", "teeth": teeth, "centre": [0.0, 0.0], "motion": motion},
+                {"name": "driven", "load": load} | wheel,
+            ],
+            "route": {"pretension": "300 N", "adjust": move},
+        },
+        f"{teeth} and {teeth} teeth",
+    )
+
+
+def teeth_and_speed(page: Page, length: Length) -> None:
+    """Hold levels of impulses over the number of teeth and over the speed."""
+    short = Length(max(0.3 * length.until, 0.03), 0.4 * length.run_in)
+    blocks = 4 if length.until >= 0.5 else 2
+    few = replicates(equal_sprockets(17), short)
+    compared = [
+        Comparison("25 teeth", replicates(equal_sprockets(25), short), few, "17 teeth", blocks),
+        Comparison(
+            "17 teeth, 4 m/s",
+            replicates(equal_sprockets(17, 2.0 * SPEED), short),
+            few,
+            "2 m/s",
+            blocks,
+        ),
+    ]
+    page.add("impulses, teeth and speed", levels_of(compared))
+
+
 def levels_of(compared: list[Comparison]) -> str:
     """Return a table of levels in Markdown, each with half of its 99 % interval."""
     orders = " | ".join(f"mesh order {order:g} [dB]" for order in ORDERS)

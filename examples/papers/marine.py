@@ -4,7 +4,7 @@ Draws every comparison that "Contact problems in roller chain drive systems" mak
 drive of a large two-stroke engine, each with five replicates and a verdict.
 
 Run it as ``python examples/papers/marine.py [--until SECONDS] [--results FOLDER]``. With the
-default of 1 s a run it takes some two minutes on two cores.
+default of 1 s a run it takes some three minutes on two cores.
 """
 
 import argparse
@@ -16,7 +16,10 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 import xarray as xr
-from impulses import impulses
+from far_swings import swings
+from impulses import impulses, teeth_and_speed
+from life import Life, life
+from marine_bars import shapes, spans_between_bars
 from marine_drive import (
     PITCH,
     SPANS,
@@ -139,7 +142,7 @@ def guides(page: Page, length: Length) -> None:
         "blows": ("blows on bars [1/s]", 1.0),
         "guide": ("force on bars, mean [N]", 1.0),
     }
-    drives = {}
+    drives, by_drive = {}, {}
     for title, base in (("guides", paper()), ("guides, default", cd.scenes.marine_engine())):
         drives = {
             "bars 5 mm clear of the rollers": base,
@@ -148,6 +151,8 @@ def guides(page: Page, length: Length) -> None:
         }
         cases = study(drives, partial(measure, length=length))
         page.add(title, table(cases, columns, "guide bars"))
+        by_drive[base.name] = cases
+    spans_between_bars(page, by_drive)
 
     figure, axes = plt.subplots(len(SPANS), 1, figsize=(10, 6.5), sharex=True, layout="constrained")
     shown = Length(min(length.until, 0.5), length.run_in)
@@ -316,14 +321,28 @@ def models(page: Page, length: Length) -> None:
     page.add("models", table(study(drives, partial(measure, length=length)), columns, "model"))
 
 
+def wear(page: Page, length: Length) -> None:
+    """Wear the drive with friction to the 1 % at which a chain beside guides is worn out."""
+    new = cd.scenes.marine_engine()
+    takes_up = {"kind": "slider", "name": "tightener", "within": "0.1 m"}
+    states = {0.0: new} | {it: cd.worn(new, it, take_up=takes_up) for it in (0.005, 0.01)}
+    # Two circuits of the chain, and some more.
+    longer = Length(2.5 * length.until, length.run_in)
+    life(page, "life", Life("`marine_engine`", states, longer, 1e-3, ("kN", 1e3)))
+
+
 PARTS: Mapping[str, Callable[[Page, Length], None]] = {
     "profile": profiles,
     "guides": guides,
+    "shapes": shapes,
     "centres": centres,
     "polygon": polygon,
     "vibration": vibration,
     "models": models,
     "impulses": impulses,
+    "teeth": teeth_and_speed,
+    "swings": swings,
+    "life": wear,
 }
 
 

@@ -1,10 +1,11 @@
 """The marine drive of the paper, its neighbours, and what is measured on a run of it."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from replicates import arrivals, p99
+from replicates import arrivals, p99, spectrum
 
 import chaindrive as cd
 
@@ -123,6 +124,13 @@ def tangent(drive: cd.Drive, span: str, run: xr.Dataset) -> tuple[np.ndarray, np
         centre = np.array([float(place[f"sprocket_{axis}"].mean()) for axis in "xy"])
         ends.append((centre, 0.5 * scene["chain"]["pitch"] / np.sin(np.pi / teeth)))
     (first, radius), (second, other) = ends
+    return touching(first, radius, second, other)
+
+
+def touching(
+    first: np.ndarray, radius: float, second: np.ndarray, other: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return both ends of the line that touches two circles on its left, and its normal."""
     along = second - first
     distance = np.hypot(*along)
     along /= distance
@@ -147,7 +155,7 @@ def beside(drive: cd.Drive, span: str, run: xr.Dataset) -> tuple[np.ndarray, np.
 def offset(drive: cd.Drive, span: str, run: xr.Dataset) -> np.ndarray:
     """Return the offset of the middle of a span from its straight line, outward [m], (time,)."""
     s, y, _ = beside(drive, span, run)
-    near = np.abs(y) < 2.0 * PITCH
+    near = np.abs(y) < 2.0 * drive.resolved().to_dict()["chain"]["pitch"]
     before = np.where(near & (s <= 0.0), s, -np.inf).argmax(axis=1)
     after = np.where(near & (s > 0.0), s, np.inf).argmin(axis=1)
     rows = np.arange(len(s))
@@ -165,7 +173,7 @@ def taken_by_waves(drive: cd.Drive, span: str, run: xr.Dataset) -> float:
     return 0.5 * length * float(np.mean(slope**2))
 
 
-def measure(drive: cd.Drive, length: Length) -> dict[str, float]:
+def measure(drive: cd.Drive, length: Length) -> dict[str, Any]:
     """Return the figures of one run."""
     run = observe(drive, length)
     tension = run["span_tension"]
@@ -184,10 +192,12 @@ def measure(drive: cd.Drive, length: Length) -> dict[str, float]:
         "ripple": float(camshaft.std() / abs(camshaft.mean())),
         "loss": float(lost[-1] - lost[0]) / length.until,
         "waves": sum(taken_by_waves(drive, span, run) for span in ALL_SPANS),
-        "blows": float(((run["event_kind"] == "guide") & (run["event_start"] > 0.0)).sum())
-        / length.until,
         "guide": 0.0,
     }
+    on_bars = ((run["event_kind"] == "guide") & (run["event_start"] > 0.0)).values
+    blows = run["event_peak_force"].values[on_bars]
+    found["blows"] = len(blows) / length.until
+    found["blow"] = p99(blows)
     if drive.guides:
         force = np.hypot(run["guide_force_x"], run["guide_force_y"])
         found["guide"] = float(force.sum("guide").mean())
@@ -195,4 +205,19 @@ def measure(drive: cd.Drive, length: Length) -> dict[str, float]:
         swing = offset(drive, span, run)
         found[f"swing {span}"] = float(swing.std())
         found[f"reach {span}"] = float(np.percentile(swing, 99.5))
+        found |= {f"{band} {span}": value for band, value in by_frequency(swing).items()}
     return found
+
+
+def by_frequency(
+    swing: np.ndarray, every: float = EVERY, mesh: float = TEETH * SPEED / 60.0
+) -> dict[str, Any]:
+    """Return the root mean square of a swing below half the mesh frequency, and above it [m].
+
+    With its spectrum, `level`, whose lines are root mean squares as well.
+    """
+    frequency, level = spectrum(swing, every)
+    low = frequency < 0.5 * mesh
+    # A line under a Hann window spreads over others: the squares sum to 1.5 of its own.
+    slow, fast = (float(np.sqrt((level[it] ** 2).sum() / 1.5)) for it in (low, ~low))
+    return {"slow": slow, "fast": fast, "level": level}

@@ -21,9 +21,9 @@ PHASES = (0.1, 0.3, 0.5, 0.7, 0.9)
 CHANCE = 4.604
 JOBS = 2
 
-Measure = Callable[[cd.Drive], dict[str, float]]
+Measure = Callable[[cd.Drive], dict[str, Any]]
 Case = dict[str, np.ndarray]
-"""Quantities by name, each (replicates,)."""
+"""Quantities by name, each (replicates,); a spectrum (replicates, frequencies)."""
 
 
 def starts(drive: cd.Drive) -> list[cd.Drive]:

@@ -94,34 +94,105 @@ def test_m01_loss_of_bicycle_chains() -> None:
             case.number(quantity, found, interval=(min(powers), max(powers)))
 
 
+def derailed(
+    rig: cd.Drive, cog: int, power: float, rpm: float, lateral: float = 0.0, **changes: Any
+) -> cd.Drive:
+    """Give the derailleur another cog, its pulleys as far from it, and a power [W] to transmit."""
+    scene = rig.resolved().to_dict()
+    scene["chain"].pop("links")
+    ring, wheel, guide, tension = scene["sprockets"]
+    cage = scene["tensioners"][0]["carrier"]
+    down = np.subtract(guide["centre"], wheel["centre"])
+    before, now = (PITCH / (2 * math.sin(math.pi / teeth)) for teeth in (wheel["teeth"], cog))
+    moved = (now - before) * down / np.hypot(*down)
+    for part, key in ((guide, "centre"), (tension, "centre"), (cage, "pivot")):
+        part[key] = np.add(part[key], moved).tolist()
+    for aside in (wheel, guide, tension):
+        aside["lateral"] = lateral
+    ring |= {"teeth": 52, "motion": {"kind": "constant", "speed": f"-{rpm} rpm"}}
+    torque = power / (math.tau * rpm / 60 * 52 / cog)
+    wheel |= {"teeth": cog, "load": [{"kind": "constant", "torque": torque}]}
+    return cd.Drive.from_dict(scene, "derailed").replace(changes)
+
+
+def by_place(drive: cd.Drive) -> dict[str, float]:
+    """Mean power lost at every place [W]."""
+    lost = cd.simulate(drive, record=["energy_losses"], **FAST)["energy_losses"]
+    mean = (lost[-1] - lost[0]) / float(lost["time"][-1] - lost["time"][0])
+    return {str(place): float(mean.sel(place=place)) for place in mean["place"].values}
+
+
+#: What no source tells of a derailleur, each turned to its ends alone: by name the changes.
+PULLEYS = ("sprockets.guide.bearing", "sprockets.tension.bearing")
+OF_DERAILLEURS: dict[str, list[dict[str, Any]]] = {
+    "bearings": [
+        {key: {"kind": "torque", "torque": torque} for key in PULLEYS} for torque in (2e-4, 5e-3)
+    ],
+    "cage": [
+        {"tensioners.cage.push.preload": -0.1 * pull, "route.pretension": pull}
+        for pull in (5.0, 12.0)
+    ],
+    "offset": [{"lateral": 20e-3}],
+}
+
+
 @pytest.mark.slow
 def test_m04_efficiency_over_tension_and_sprocket() -> None:
     with MeasuredCase("M04") as case:
-        rig = case.drive()
+        rig = case.drive().replace(
+            {"chain.lateral.friction": 0.125} | dict(zip(OPEN, (0.125, 1.0), strict=True))
+        )
         powers = [50.0, 100.0, 175.0]
-        small = [efficiency(rig, (52, 11), 108, power, 60) for power in powers]
-        middle, large = (efficiency(rig, (52, cog), 108, 100.0, 60) for cog in (15, 21))
+        small = [by_place(derailed(rig, 11, power, 60)) for power in powers]
+        middle, large = (by_place(derailed(rig, cog, 100.0, 60)) for cog in (15, 21))
+        lost = [sum(it.values()) for it in small]
+        shares = [power / (power + it) for power, it in zip(powers, lost, strict=True)]
         inverse = 1 / np.array(powers)  # as 1/T: the speed of the chain is the same
-        correlation = float(np.corrcoef(inverse, small)[0, 1])
-        percent = ", ".join(f"{100 * it:.2f}" for it in small)
+        correlation = float(np.corrcoef(inverse, shares)[0, 1])
+        percent = ", ".join(f"{100 * it:.2f}" for it in shares)
         case.trend(
             "efficiency over 1/tension, 52 to 11 teeth",
-            correlation < -0.95 and small[0] < small[1] < small[2],
+            correlation < -0.95 and shares[0] < shares[1] < shares[2],
             f"{percent} % at 50, 100, 175 W; correlation {correlation:.3f}",
         )
+        slope, intercept = np.polyfit(powers, lost, 1)
+        parts = {place: np.polyfit(powers, [it[place] for it in small], 1)[1] for place in small[0]}
+        off = max(abs(np.polyval([slope, intercept], powers) - lost)) / lost[-1]
+        assert off < 0.02, off
+        line = case.data["line"]
+        assert intercept == pytest.approx(line["intercept"], abs=0.02), intercept
+        assert slope == pytest.approx(line["slope"], rel=0.03), slope
+        for place, part in parts.items():
+            assert part == pytest.approx(line["parts"].get(place, 0.0), abs=0.02), place
+        whole = [sum(it.values()) for it in (large, middle)]
+        best, between = (100.0 / (100.0 + it) for it in whole)
         case.trend(
             "order of the rear sprockets",
-            large > middle > small[1],
-            f"{100 * large:.2f}, {100 * middle:.2f}, {100 * small[1]:.2f} %",
+            best > between > shares[1],
+            f"{100 * best:.2f}, {100 * between:.2f}, {100 * shares[1]:.2f} %",
         )
-        worst, best = (
-            corners(transmitting(rig, (52, cog), 108, 100.0, 60), OPEN) for cog in (11, 21)
-        )
-        points = np.subtract(worst, best)  # of 100 W
+
+        def points(**changes: Any) -> float:
+            worst, good = (
+                sum(by_place(derailed(rig, cog, 100.0, 60, **changes)).values()) for cog in (11, 21)
+            )
+            return worst - good  # of 100 W
+
+        taken = points()
+        corners = [
+            points(**{FRICTION: friction, "chain.lateral.friction": friction, factor: pressure})
+            for friction in OPEN[FRICTION]
+            for factor in ["chain.joint.pressure_factor"]
+            for pressure in OPEN[factor]
+        ]
+        low, high = min(corners), max(corners)
+        for ends in OF_DERAILLEURS.values():
+            by = [points(**changes) - taken for changes in ends]
+            low, high = low + min(0.0, *by), high + max(0.0, *by)
         case.number(
             "efficiency of 52 to 21 less that of 52 to 11 teeth, 100 W",
-            100 * (large - small[1]),
-            interval=(float(points.min()), float(points.max())),
+            100 * (best - shares[1]),
+            interval=(low, high),
         )
 
 
