@@ -1,6 +1,7 @@
 # Every public name and the module that defines it. Type checkers read this, and `__init__.py` does.
 
 from chaindrive import analysis as analysis
+from chaindrive import assumptions as assumptions
 from chaindrive import design as design
 from chaindrive import errors as errors
 from chaindrive import exchange as exchange
@@ -13,6 +14,7 @@ from chaindrive._core import __build__ as __build__
 from chaindrive._core import __version__ as __version__
 from chaindrive.analysis.elongation import worn as worn
 from chaindrive.analysis.ramps import run_up as run_up
+from chaindrive.assumptions.ranking import tornado as tornado
 from chaindrive.chain_catalogue import catalogue as catalogue
 from chaindrive.channel import Channel as Channel
 from chaindrive.channel import channels as channels

@@ -9,6 +9,7 @@ figures of one's own.
 
 from __future__ import annotations
 
+from chaindrive.plot.assumed import sobol_indices, tornado
 from chaindrive.plot.curves import tension, work_precision
 from chaindrive.plot.drive import frame, layout, svg
 from chaindrive.plot.impulses import impulse_spectrum
@@ -65,6 +66,7 @@ __all__ = [
     "rainflow",
     "response",
     "running_modes",
+    "sobol_indices",
     "span_envelope",
     "span_motion",
     "spectrum",
@@ -73,6 +75,7 @@ __all__ = [
     "tension",
     "tension_around_loop",
     "tooth_load",
+    "tornado",
     "transmission_error",
     "utilisation",
     "work_precision",
