@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 from scipy.signal import lfilter
+from scipy.stats import t as student
 
 import chaindrive as cd
 from chaindrive.measurement.free import open_to
@@ -96,6 +97,85 @@ def test_a_resumed_fit_computes_nothing_twice(
     assert again.attrs["computed"] == len(late)
     xr.testing.assert_identical(again.drop_attrs(deep=False), fit.drop_attrs(deep=False))
     assert again.attrs["scene"] == fit.attrs["scene"]
+
+
+SLOW_SHAFT = {"sprockets.driver.motion.speed": "200 rpm"}
+FORETOLD = ["span_tension_mean[driven-driver]", "span_tension_std[driven-driver]"]
+
+
+@pytest.fixture(scope="module")
+def foretold(fit: xr.Dataset) -> xr.Dataset:
+    outputs = [*FORETOLD, "loss_share", "sprocket_power_mean[driver]"]
+    return cd.predict(fit, outputs, at=SLOW_SHAFT, until=0.1)
+
+
+@pytest.mark.costs("a fit is some twenty runs")
+def test_a_prediction_holds_the_truth_at_another_speed(foretold: xr.Dataset) -> None:
+    """The truth from another phase, with another step; with the load unfitted it is missed."""
+    assert (foretold["verdict"] == "foretold").all(), foretold.attrs["summary"]
+    true, unfitted = (
+        cd.sweep(
+            it.replace(SLOW_SHAFT), {"route.phase": [0.37]}, until=0.1, method="verlet", step=6e-6
+        )
+        for it in (drive().replace({LOAD: TRUTH[LOAD]}), drive())
+    )
+    for name in FORETOLD:
+        statistic, _, span = name.removesuffix("]").partition("[")
+        row = foretold.sel(output=name)
+        value = float(true[statistic].sel(span=span)[0])
+        assert float(row["lower"]) < value < float(row["upper"]), name
+    mean = foretold.sel(output=FORETOLD[0])
+    assert float(unfitted["span_tension_mean"].sel(span="driven-driver")[0]) > float(mean["upper"])
+    assert "0.667 times" in foretold.attrs["reach"]
+
+
+@pytest.mark.costs("a fit is some twenty runs")
+def test_the_band_is_made_of_its_parts(fit: xr.Dataset, foretold: xr.Dataset) -> None:
+    """P = M ω n, so one error of the torque moves the power by as much; Student's t by SciPy."""
+    error = float(fit.sel(parameter=LOAD)["error"])
+    power = foretold.sel(output="sprocket_power_mean[driver]")
+    omega = 200.0 * 2.0 * np.pi / 60.0 * 19.0 / 57.0
+    assert float(power["parameter_error"]) == pytest.approx(error * omega, rel=0.02)
+    total = np.hypot(foretold["parameter_error"], foretold["run_error"])
+    width = student.ppf(0.975, foretold["freedom"]) * total
+    wanted = width + foretold["numerical"] + foretold["bending"]
+    np.testing.assert_allclose(foretold["half_width"], wanted, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"at": {LOAD: -1500.0}}, "it is fitted"),
+        ({"at": {"sprockets.driver.motion.speed": "2000 rpm"}}, "out of reach of a fit at 31.4"),
+        ({"at": {"sprockets.driver.motion.speed": "-300 rpm"}}, "out of reach"),
+        ({"at": {"sprockets.driver.speed": 3.0}}, "cannot take it"),
+        ({"at": {"contact.joints.friction": "none"}}, "another model"),
+        ({"phases": [0.5]}, "tells no scatter"),
+        ({"drive": cd.scenes.spinning_ring()}, "cannot take it"),
+    ],
+)
+def test_a_prediction_is_refused_with_a_reason(
+    fit: xr.Dataset, change: dict[str, object], words: str
+) -> None:
+    with pytest.raises(cd.MeasurementError, match=words):
+        cd.predict(fit, **change)
+
+
+def test_a_fit_that_was_refused_foretells_nothing(fit: xr.Dataset) -> None:
+    refused = fit.assign_attrs(verdict="refused", reasons=["physics are missing"])
+    with pytest.raises(cd.MeasurementError, match="foretells nothing: physics are missing"):
+        cd.predict(refused)
+    with pytest.raises(cd.MeasurementError, match="was kept, and foretells nothing"):
+        cd.predict(fit.assign_attrs(validation="misses"))
+    with pytest.raises(cd.MeasurementError, match="this is no fit"):
+        cd.predict(xr.Dataset())
+
+
+@pytest.mark.costs("a fit is some twenty runs")
+def test_a_wide_band_is_no_prediction(fit: xr.Dataset) -> None:
+    with pytest.warns(cd.MeasurementWarning, match="the band is"):
+        found = cd.predict(fit, FORETOLD, until=0.01, telling=1e-4, phases=(0.1, 0.6))
+    assert (found["verdict"] == "cannot tell").all()
 
 
 @pytest.mark.parametrize(

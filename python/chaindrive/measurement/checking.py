@@ -27,7 +27,7 @@ from chaindrive.measurement.lines import mesh_lines
 from chaindrive.measurement.quantities import MeasuredQuantity
 from chaindrive.measurement.sensitivities import Sensitivities, sensitivities
 from chaindrive.measurement.series import channel_names, measured_series, sensor_of
-from chaindrive.measurement.telling import as_text
+from chaindrive.measurement.telling import as_text, number, texts
 from chaindrive.measurement.time_base import Finding
 from chaindrive.progress import told
 from chaindrive.settings import Quantity
@@ -259,14 +259,14 @@ def _dataset(
     variables: dict[str, Any] = {
         "quantity": (
             "channel",
-            _texts("" if it.quantity is None else str(it.quantity) for it in rows),
+            texts("" if it.quantity is None else str(it.quantity) for it in rows),
         ),
-        "unit": ("channel", _texts(it.unit for it in rows)),
+        "unit": ("channel", texts(it.unit for it in rows)),
         "measured_mean": ("channel", [it.measured for it in rows]),
         "simulated_mean": ("channel", [it.simulated for it in rows]),
-        "problem": ("channel", _texts(it.problem for it in rows)),
+        "problem": ("channel", texts(it.problem for it in rows)),
     }
-    coordinates: dict[str, Any] = {"channel": _texts(it.name for it in rows)}
+    coordinates: dict[str, Any] = {"channel": texts(it.name for it in rows)}
     problems = [f"{it.name} {it.problem}" for it in rows if it.problem] + [
         str(it) for it in findings
     ]
@@ -292,8 +292,8 @@ def _dataset(
             "sensitivity": (("feature", "parameter"), moved.jacobian),
             "feature_error": ("feature", np.sqrt(np.diag(moved.covariance))),
         }
-        paths = _texts(it.path for it in found.parameters)
-        coordinates |= {"parameter": paths, "parameter_2": paths, "feature": _texts(moved.features)}
+        paths = texts(it.path for it in found.parameters)
+        coordinates |= {"parameter": paths, "parameter_2": paths, "feature": texts(moved.features)}
         attributes |= {
             "identified": int(found.is_identified),
             "silent": [it.path for it in found.silent],
@@ -305,10 +305,6 @@ def _dataset(
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 
-def _texts(texts: Any) -> Any:
-    return np.asarray(list(texts), dtype=np.str_)
-
-
 def _channels(
     rows: list[Corresponding], data: xr.Dataset, findings: list[Finding]
 ) -> dict[str, Any]:
@@ -317,8 +313,8 @@ def _channels(
             it.name,
             "–" if it.quantity is None else str(it.quantity),
             it.unit or "–",
-            _number(it.measured),
-            _number(it.simulated),
+            number(it.measured),
+            number(it.simulated),
             it.problem or "fits",
         ]
         for it in rows
@@ -346,11 +342,11 @@ def _identified(found: Identifiability, length: _Floats, seconds: float) -> dict
         rows.append(
             [
                 it.path,
-                _number(it.low),
-                _number(it.high),
-                _number(own),
-                _number(error),
-                _number(needed),
+                number(it.low),
+                number(it.high),
+                number(own),
+                number(error),
+                number(needed),
                 so,
             ]
         )
@@ -373,7 +369,3 @@ def _identified(found: Identifiability, length: _Floats, seconds: float) -> dict
         "rows": rows,
         "sentences": words,
     }
-
-
-def _number(value: float) -> str:
-    return f"{value:.4g}" if math.isfinite(value) else "–"
