@@ -14,6 +14,7 @@ from chaindrive._core import __build__ as __build__
 from chaindrive._core import __version__ as __version__
 from chaindrive.analysis.elongation import worn as worn
 from chaindrive.analysis.ramps import run_up as run_up
+from chaindrive.assumptions.propagation import uncertainty as uncertainty
 from chaindrive.assumptions.ranking import tornado as tornado
 from chaindrive.chain_catalogue import catalogue as catalogue
 from chaindrive.channel import Channel as Channel

@@ -12,6 +12,7 @@ mpl.use("Agg")
 from matplotlib import pyplot as plt
 
 import chaindrive as cd
+from chaindrive.assumptions.distributions import distribution_of
 
 LOAD = "sprockets.driven.load[0].torque"
 PINS = "contact.joints.friction"
@@ -123,3 +124,86 @@ def test_what_is_stored_is_not_computed_again(tmp_path: Path) -> None:
     xr.testing.assert_identical(cd.tornado(drive(), ranges, **given), first)
     after = {it.name: it.stat().st_mtime_ns for it in tmp_path.iterdir()}
     assert before == after
+
+
+MU = "contact.joints.friction.coefficient"
+
+
+@pytest.fixture(scope="module")
+def spread() -> xr.Dataset:
+    laws = {MU: ("0.05", 0.15), LOAD: "normal(-1433 N m, 30 N m)"}
+    outputs = ["sprocket_power_mean[driver]", "loss_share"]
+    return cd.uncertainty(drive(), laws, outputs, samples=16, until=0.02)
+
+
+@pytest.mark.costs("indices take many variants")
+def test_a_spread_is_that_of_its_distributions(spread: xr.Dataset) -> None:
+    """σ_P = ω σ_M of the load; what is lost is as even as the friction, of width/√12."""
+    assert spread.sizes["variant"] == 16 * (3 + 2)
+    power, lost = (spread.isel(output=n) for n in range(2))
+    omega = 2.0 * np.pi * 5.0 * 19.0 / 57.0
+    assert float(power["deviation"]) == pytest.approx(30.0 * omega, rel=0.2)
+    per_mu = float(lost["mean"]) / 0.1
+    assert float(lost["deviation"]) == pytest.approx(per_mu * 0.1 / np.sqrt(12.0), rel=0.15)
+    assert (spread["lower"] < spread["mean"]).all()
+    assert (spread["mean"] < spread["upper"]).all()
+    assert spread["sample"].sel(parameter=MU).min() >= 0.05
+    assert (spread["numerical"] < 0.1 * spread["deviation"]).all()
+
+
+@pytest.mark.costs("indices take many variants")
+def test_indices_name_whose_spread_it_is(spread: xr.Dataset) -> None:
+    total = spread["total_order"]
+    assert spread["parameter"].to_numpy().tolist() == [MU, LOAD, "route.phase"]
+    assert total.idxmax("parameter").to_numpy().tolist() == [LOAD, MU]
+    assert float(total.sel(parameter=MU, output="loss_share")) == pytest.approx(1.0, abs=0.4)
+    assert float(total.sel(parameter=LOAD, output="loss_share")) < 0.05
+    ax = cd.plot.sobol_indices(spread, "loss_share")
+    assert [it.get_text() for it in ax.get_yticklabels()][-1] == MU
+    plt.close("all")
+
+
+def test_finished_parts_of_a_plan_are_kept(tmp_path: Path) -> None:
+    given = {"outputs": "contact_force_p99", "samples": 8, "until": 1e-3, "run_in": 0}
+    laws = {"route.pretension": "triangular(1 kN, 1.5 kN, 2 kN)"}
+    first = cd.uncertainty(drive(), laws, store=tmp_path, **given)
+    before = {it.name: it.stat().st_mtime_ns for it in tmp_path.iterdir()}
+    xr.testing.assert_identical(cd.uncertainty(drive(), laws, store=tmp_path, **given), first)
+    assert {it.name: it.stat().st_mtime_ns for it in tmp_path.iterdir()} == before
+
+
+@pytest.mark.parametrize(
+    ("law", "ends"),
+    [
+        ((1.0, 3.0), (1.0, 3.0)),
+        ("uniform(1 kN, 2 kN)", (1000.0, 2000.0)),
+        ("triangular(1, 1, 3)", (1.0, 3.0)),
+        ("normal(0, 1)", (-1.0, 1.0)),
+        ("lognormal(2, 1.5)", (2.0 / 1.5, 3.0)),
+    ],
+)
+def test_distributions_are_those_of_the_text(law: object, ends: tuple[float, float]) -> None:
+    """Their ends; of a normal one the quantiles of one standard deviation (tables)."""
+    found = distribution_of(law, "chain.mass")
+    at = (0.158655, 0.841345) if "normal" in str(law) else (0.0, 1.0)
+    np.testing.assert_allclose(found.ppf(at), ends, rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("laws", "words"),
+    [
+        ({}, "no distribution"),
+        ({"chain.mass": "gauss(1, 2)"}, "no distribution.*normal"),
+        ({"chain.mass": (3.0, 2.0)}, "no distribution"),
+        ({"chain.mass": "normal(3 kg, -1 g)"}, "no distribution"),
+        ({"chain.links": (110, 130)}, "whole number"),
+        ({"chain.weight": (1.0, 2.0)}, "weight"),
+        ({"route.phase": (0.0, 1.0)}, "no assumption"),
+    ],
+)
+def test_what_cannot_be_drawn_is_told(laws: dict[str, object], words: str) -> None:
+    with pytest.raises(cd.ParameterError) as told:
+        cd.uncertainty(drive(), laws, until=1e-3, run_in=0)
+    assert re.search(words, f"{told.value}; {told.value.hint}")
+    with pytest.raises(cd.ParameterError, match="a power of two"):
+        cd.uncertainty(drive(), {"chain.mass": (1.0, 2.0)}, samples=100)

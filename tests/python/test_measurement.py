@@ -340,3 +340,11 @@ def test_the_command_reads_a_rig_file_and_answers_in_json(
     assert json.loads(refused.stderr)["error"]["what"].startswith("nothing.csv does not exist")
     again = chaindrive("compare", *rig, "-o", "report.html")
     assert again.returncode == 3
+
+
+def test_a_drive_without_a_run_in_is_checked(table: pd.DataFrame) -> None:
+    """Such a run states no run-in, and its variants have none either."""
+    drive = cd.scenes.industrial_16b().replace({"run.run_in": 0})
+    free = {"sprockets.driven.load[0].torque": (-1600.0, -1300.0)}
+    found = cd.check_data(drive, read(table), free, until=0.05)
+    assert found.attrs["identified"] == 1

@@ -88,10 +88,10 @@ class Trials:
             A replicate cannot be simulated.
         """
         settings = self._settings | more
-        of = [_core.__build__, drive.resolved().text, self._vary, settings]
-        identity = json.dumps(of, sort_keys=True, default=str)
+        # A quantity of pint is no JSON, but its text tells it.
+        told = json.dumps(settings, sort_keys=True, default=str)
         runs = self._store.kept(
-            identity,
+            [_core.__build__, drive.resolved().text, self._vary, told],
             lambda: sweep(drive, self._vary, jobs=self._jobs, progress=self._share, **settings),
         )
         self._done += 1

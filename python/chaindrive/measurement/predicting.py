@@ -141,7 +141,7 @@ def predict(
         ends = [{it: values[it] + side * errors[it]} for it in values for side in (-1.0, 1.0)]
         frozen = settings_for(base, run, ends) | {
             "until": float(run.attrs["until"]),
-            "run_in": float(run.attrs["run_in"]),
+            "run_in": float(run.attrs.get("run_in", 0.0)),
         }
         count = 2 + len(ends)
         trials = Trials(base, outputs, phases, frozen, RunStore(store), jobs, tell, count)

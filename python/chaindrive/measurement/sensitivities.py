@@ -149,7 +149,7 @@ def _points(
         drive,
         design={path: [row[path] for row in rows] for path in rows[0]},
         until=float(run.attrs["until"]),
-        run_in=float(run.attrs["run_in"]),
+        run_in=float(run.attrs.get("run_in", 0.0)),
         every=float(run.attrs["every"]),
         record=recorded,
         progress=tell if tell is not None else False,
