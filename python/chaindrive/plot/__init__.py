@@ -12,6 +12,7 @@ from __future__ import annotations
 from chaindrive.plot.assumed import sobol_indices, tornado
 from chaindrive.plot.curves import tension, work_precision
 from chaindrive.plot.drive import frame, layout, svg
+from chaindrive.plot.fitted import fit_correlations, fit_intervals, fit_residuals
 from chaindrive.plot.impulses import impulse_spectrum
 from chaindrive.plot.measured import (
     compared_orders,
@@ -53,6 +54,9 @@ __all__ = [
     "differences",
     "distribution",
     "elongation",
+    "fit_correlations",
+    "fit_intervals",
+    "fit_residuals",
     "frame",
     "impacts",
     "impulse_spectrum",
