@@ -54,6 +54,7 @@ from chaindrive.measurement.calibration import calibrate as calibrate
 from chaindrive.measurement.checking import check_data as check_data
 from chaindrive.measurement.comparison import compare as compare
 from chaindrive.measurement.predicting import predict as predict
+from chaindrive.measurement.proposing import next_measurement as next_measurement
 from chaindrive.measurement.record import measured as measured
 from chaindrive.page import Page as Page
 from chaindrive.precision import work_precision as work_precision

@@ -106,7 +106,8 @@ def predict(
         ``run_error`` (standard), ``numerical``, ``bending`` (bounds) [unit of the output],
         ``freedom`` (of the errors), ``unit``, ``verdict`` (``"foretold"`` or ``"cannot tell"``),
         ``reason`` (output,); ``sensitivity`` to one standard error of each parameter [unit of the
-        output] (output, parameter). Attributes: ``reach`` in words, ``level``, ``until`` [s],
+        output] (output, parameter), and these, ``standard_error`` [SI] (parameter,). Attributes:
+        ``reach`` in words, ``level``, ``until`` [s],
         ``method``, ``step`` [s], ``run_in`` [s], ``scene``, a ``summary`` to print and a ``page``.
 
     Raises
@@ -161,6 +162,7 @@ def predict(
         {name: ("output", it) for name, it in rows.items() if name != "sensitivity"}
         | {
             "sensitivity": (("output", "parameter"), rows["sensitivity"]),
+            "standard_error": ("parameter", scale),
             "unit": ("output", texts(trials.units)),
             "verdict": ("output", texts("cannot tell" if it else "foretold" for it in verdicts)),
             "reason": ("output", texts(verdicts)),

@@ -53,6 +53,10 @@ class Sensitivities(NamedTuple):
     """Covariance of the features (features, features)."""
     features: list[str]
     """Names of the features, ``flange mean``."""
+    slopes: _Floats
+    """As `jacobian`, of all features (features, p)."""
+    scatter: _Floats
+    """As `noise`, of all features (features, p)."""
 
 
 def sensitivities(
@@ -113,6 +117,8 @@ def sensitivities(
         np.where(clear[:, None], noise, 0.0),
         covariance,
         [f"{it.channel} {it.name}" for it in base],
+        jacobian,
+        noise,
     )
 
 
