@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -164,12 +165,12 @@ def test_a_wrong_argument_is_told(
 def test_what_ctrl_c_stops_is_kept_where_there_is_a_store(place: Path) -> None:
     import signal
 
-    verb = ["uncertainty", "drive.toml", "--draw", f"{LOAD}=-1500..-1300", "--samples", "4096"]
+    verb = ["uncertainty", "drive.toml", "--draw", f"{LOAD}=-1500..-1300", "--samples", "1024"]
     more = ["--until", "2 ms", "--store", "parts"]
     whole = [sys.executable, "-m", "chaindrive", *verb, *more]
     with subprocess.Popen(whole, stderr=subprocess.PIPE, text=True) as process:
         while len(list(place.glob("parts/*.npz"))) < 3 and process.poll() is None:
-            pass
+            time.sleep(0.05)
         process.send_signal(signal.SIGINT)
         assert process.stderr is not None
         told = process.stderr.read()
