@@ -16,7 +16,11 @@ FILES = [
     file for file in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))] if file.exists()
 ]
 # Packages that nothing but the blocks of a page take.
-TAKES = {"sweep-recipes.md": ["SALib", "optuna", "scipy"], "command-line.md": ["pyarrow"]}
+TAKES = {
+    "assumptions.md": ["SALib"],
+    "sweep-recipes.md": ["SALib", "optuna", "scipy"],
+    "command-line.md": ["pyarrow"],
+}
 # Lengths of runs that pages are read with, and those that show as much of whether they run.
 SHORTER = {
     "README.md": {"until=0.5": "until=0.02, run_in=0"},
