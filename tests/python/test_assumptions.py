@@ -37,14 +37,14 @@ def ranked() -> xr.Dataset:
         "lost": "loss_share",
         "half": lambda runs: 0.5 * runs["contact_force_p99"],
     }
-    return cd.tornado(drive(), ranges, outputs, until=0.05)
+    return cd.tornado(drive(), ranges, outputs, until=0.02)
 
 
 def test_a_tornado_is_the_mean_of_differences_phase_by_phase(ranked: xr.Dataset) -> None:
     """Against a sweep of its own; Student's t of two degrees of freedom is 4.303 (tables)."""
     phases = {"route.phase": [0.0, 0.34, 0.67]}
     base, low = (
-        cd.sweep(it, phases, until=0.05, method="auto")["span_tension_std"].sel(
+        cd.sweep(it, phases, until=0.02, method="auto")["span_tension_std"].sel(
             span="driven-driver"
         )
         for it in (drive(), drive().replace({LOAD: -1500.0}))

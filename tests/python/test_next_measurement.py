@@ -18,13 +18,13 @@ CANDIDATES = {
 
 
 def drive() -> cd.Drive:
-    return cd.scenes.industrial_16b().replace({"run.run_in": "50 ms"})
+    return cd.scenes.industrial_16b().replace({"run.run_in": "20 ms"})
 
 
 @pytest.fixture(scope="module")
 def proposed() -> xr.Dataset:
     points = {"as it is": {}, "slow": {"sprockets.driver.motion.speed": "150 rpm"}}
-    return cd.next_measurement(drive(), FREE, CANDIDATES, excitations=points, until=0.06)
+    return cd.next_measurement(drive(), FREE, CANDIDATES, excitations=points, until=0.05)
 
 
 @pytest.mark.costs("sensitivities at two operating points")
