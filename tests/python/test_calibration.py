@@ -2,6 +2,7 @@
 
 import csv
 import json
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -244,6 +245,38 @@ FOUR = {
 }
 
 
+def draws_of(name: str) -> list[dict[str, str]]:
+    """Forty draws of a table, which was made before anybody had seen a record of it."""
+    text = (Path(__file__).parent / name).read_text(encoding="utf-8")
+    draws = list(csv.DictReader(text.splitlines()))
+    assert len(draws) == 40
+    return draws
+
+
+def record_of(rig: cd.Drive, draw: dict[str, str], seconds: float) -> xr.Dataset:
+    """A record of a rig, its gains off by 1 %, its noise correlated in time."""
+    rng = np.random.default_rng(int(draw["noise"]))
+    settings = {"until": seconds, "every": 4e-4, "step": 7e-6, "method": "verlet", "run_in": 0.6}
+    run = cd.simulate(rig, record=CHANNELS, error=False, **settings).isel(time=slice(0, -1))
+    places = {
+        "tight": ("span_tension", {"span": "driven-driver"}, 20.0),
+        "slack": ("span_tension", {"span": "driver-driven"}, 5.0),
+        "torque": ("sprocket_torque", {"sprocket": "driver"}, 1.0),
+    }
+    table, channels = {"time [s]": run["time"].to_numpy()}, {}
+    for name, (quantity, at, size) in places.items():
+        white = rng.standard_normal(run.sizes["time"])
+        noise = size * lfilter([np.sqrt(1.0 - 0.9**2)], [1.0, -0.9], white)
+        unit = "N" if quantity == "span_tension" else "N m"
+        gain = float(draw[f"gain_{name}"])
+        table[f"{name} [{unit}]"] = gain * run[quantity].sel(at).to_numpy() + noise
+        place = next(iter(at.values()))
+        channels[name] = {"quantity": f"{quantity}[{place}]", "gain_uncertainty": 0.01}
+    speed = rig.resolved().to_dict()["sprockets"][0]["motion"]["speed"]
+    turns = {"driver": f"{speed} rad/s"}
+    return cd.measured(pd.DataFrame(table), channels=channels, turns=turns)
+
+
 @pytest.mark.slow
 def test_intervals_of_forty_records_hold_the_truth() -> None:
     """Gains off by 1 %, noise correlated in time, another step, phase and sampling.
@@ -253,33 +286,12 @@ def test_intervals_of_forty_records_hold_the_truth() -> None:
     A right program has 33 of 40 or more with a probability of 0.9993 for each parameter.
     """
     hits, refused = dict.fromkeys(FOUR, 0), 0
-    table_of_draws = Path(__file__).parent / "forty_records.csv"
-    draws = list(csv.DictReader(table_of_draws.read_text().splitlines()))
-    assert len(draws) == 40
-    for number, draw in enumerate(draws):
+    for number, draw in enumerate(draws_of("forty_records.csv")):
         truth = {path: float(draw[path]) for path in FOUR}
-        gains = [float(draw[f"gain_{name}"]) for name in ("tight", "slack", "torque")]
-        rng = np.random.default_rng(int(draw["noise"]))
         rig = cd.scenes.industrial_16b()
         # As a fit reads the paths: the kind of friction stays.
         true = open_to(rig, truth).replace(truth | {"route.phase": float(draw["phase"])})
-        settings = {"until": 1.0, "every": 4e-4, "step": 7e-6, "method": "verlet", "run_in": 0.6}
-        run = cd.simulate(true, record=CHANNELS, error=False, **settings).isel(time=slice(0, -1))
-        places = {
-            "tight": ("span_tension", {"span": "driven-driver"}, 20.0),
-            "slack": ("span_tension", {"span": "driver-driven"}, 5.0),
-            "torque": ("sprocket_torque", {"sprocket": "driver"}, 1.0),
-        }
-        table, channels = {"time [s]": run["time"].to_numpy()}, {}
-        for gain, (name, (quantity, at, size)) in zip(gains, places.items(), strict=True):
-            white = rng.standard_normal(run.sizes["time"])
-            noise = size * lfilter([np.sqrt(1.0 - 0.9**2)], [1.0, -0.9], white)
-            unit = "N" if quantity == "span_tension" else "N m"
-            table[f"{name} [{unit}]"] = gain * run[quantity].sel(at).to_numpy() + noise
-            place = next(iter(at.values()))
-            channels[name] = {"quantity": f"{quantity}[{place}]", "gain_uncertainty": 0.01}
-        data = cd.measured(pd.DataFrame(table), channels=channels, turns={"driver": "300 rpm"})
-        found = cd.calibrate(rig, data, FOUR)
+        found = cd.calibrate(rig, record_of(true, draw, 1.0), FOUR)
         refused += found.attrs["verdict"] == "refused"
         for path, value in truth.items():
             row = found.sel(parameter=path)
@@ -287,3 +299,42 @@ def test_intervals_of_forty_records_hold_the_truth() -> None:
         print(number, found.attrs["verdict"], hits)
     assert min(hits.values()) >= 33, hits
     assert refused <= 4
+
+
+#: Operating points of the study of predictions: half of the speed and load, and all of them.
+HALF = {"sprockets.driver.motion.speed": "150 rpm", LOAD: -716.2}
+FULL = {"sprockets.driver.motion.speed": "300 rpm", LOAD: -1432.4}
+
+
+@pytest.mark.slow
+def test_bands_of_forty_predictions_hold_the_truth() -> None:
+    """Fitted at half the speed and load; the truth at all of them, from another phase and step.
+
+    Draws of a table of their own, as those of the fits, of SeedSequence(20261129).
+    """
+    outputs = [*FORETOLD, "loss_share"]
+    hits, refused = dict.fromkeys(outputs, 0), 0
+    three = {path: FOUR[path] for path in FOUR if path != LOAD}
+    for number, draw in enumerate(draws_of("forty_predictions.csv")):
+        truth = {path: float(draw[path]) for path in three}
+        rig = cd.scenes.industrial_16b().replace(HALF)
+        true = open_to(rig, truth).replace(truth | {"route.phase": float(draw["phase"])})
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", cd.MeasurementWarning)
+            fit = cd.calibrate(rig, record_of(true, draw, 1.0), three)
+            if fit.attrs["verdict"] == "refused" or fit.attrs["validation"] == "misses":
+                refused += 1
+                continue
+            foretold = cd.predict(fit, outputs, at=FULL, until=1.0)
+        there = true.replace(FULL)
+        phase = {"route.phase": [float(draw["phase_there"])]}
+        settings = {"until": 1.0, "run_in": 0.6, "method": "verlet", "step": 7e-6}
+        seen = cd.sweep(there, phase, **settings)
+        for name in outputs:
+            statistic, _, span = name.removesuffix("]").partition("[")
+            lost, given = seen["energy_dissipated_total"], seen["energy_supplied_total"]
+            value = float((lost / given if not span else seen[statistic].sel(span=span))[0])
+            row = foretold.sel(output=name)
+            hits[name] += float(row["lower"]) < value < float(row["upper"])
+        print(number, hits, refused)
+    assert min(hits.values()) >= 33, hits
