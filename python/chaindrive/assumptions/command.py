@@ -106,7 +106,7 @@ def _draw(
     pyplot = extra("matplotlib.pyplot", "plots")
     names = [str(it) for it in found["output"].to_numpy()]
     rows = found.sizes.get("assumption", found.sizes.get("parameter", 1))
-    height = 1.6 + 0.45 * rows
+    height = 2.6 + 0.4 * rows
     with pyplot.rc_context(dict(STYLE)):
         figure, axes = pyplot.subplots(
             len(names), figsize=(7.2, height * len(names)), layout="constrained", squeeze=False
