@@ -54,7 +54,7 @@ def main() -> None:
     if oil.DRY in wanted:
         oiled = list(oil.table(0.1 if arguments.quick else 1.0))
     results, results_added = (
-        [(case, *tornado.effects(case)) for case in it if case.preset in wanted]
+        [(case, tornado.effects(case)) for case in it if case.preset in wanted]
         for it in (every, added)
     )
     effects, effects_added = (

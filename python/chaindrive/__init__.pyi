@@ -1,6 +1,7 @@
 # Every public name and the module that defines it. Type checkers read this, and `__init__.py` does.
 
 from chaindrive import analysis as analysis
+from chaindrive import assumptions as assumptions
 from chaindrive import design as design
 from chaindrive import errors as errors
 from chaindrive import exchange as exchange
@@ -13,6 +14,8 @@ from chaindrive._core import __build__ as __build__
 from chaindrive._core import __version__ as __version__
 from chaindrive.analysis.elongation import worn as worn
 from chaindrive.analysis.ramps import run_up as run_up
+from chaindrive.assumptions.propagation import uncertainty as uncertainty
+from chaindrive.assumptions.ranking import tornado as tornado
 from chaindrive.chain_catalogue import catalogue as catalogue
 from chaindrive.channel import Channel as Channel
 from chaindrive.channel import channels as channels
@@ -50,6 +53,8 @@ from chaindrive.live import step_many as step_many
 from chaindrive.measurement.calibration import calibrate as calibrate
 from chaindrive.measurement.checking import check_data as check_data
 from chaindrive.measurement.comparison import compare as compare
+from chaindrive.measurement.predicting import predict as predict
+from chaindrive.measurement.proposing import next_measurement as next_measurement
 from chaindrive.measurement.record import measured as measured
 from chaindrive.page import Page as Page
 from chaindrive.precision import work_precision as work_precision

@@ -9,6 +9,7 @@ __all__ = ["extra"]
 
 # The extra that brings each package; pyproject.toml says in which version.
 _BRINGS = {
+    "SALib": "uncertainty",
     "asammdf": "measured-mdf",
     "dask": "dask",
     "distributed": "dask",

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import html
-import io
 import json
 import re
-from base64 import b64encode
 from collections.abc import Callable, Iterator
-from importlib.resources import files
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,6 +17,7 @@ from chaindrive.drive import Drive, load
 from chaindrive.errors import ChaindriveError, ProgramError, WriteError, tell
 from chaindrive.extras import extra
 from chaindrive.front_page import front_page
+from chaindrive.html_document import document, picture
 from chaindrive.page import escaped, page_of, section, table
 from chaindrive.replaying import replay
 from chaindrive.simulation import simulate
@@ -31,9 +29,6 @@ __all__ = ["named", "report"]
 
 #: Frames of the replay in a report: half of its size, and enough for two turns of a sprocket.
 _FRAMES = 400
-#: Width and height of a diagram [inches], and its dots per inch: sharp on paper, some 40 kB.
-_SIZE = (7.2, 3.6)
-_DOTS = 110
 
 
 def report(
@@ -43,7 +38,7 @@ def report(
     comparison: xr.Dataset | None = None,
     reference: xr.Dataset | None = None,
 ) -> str:
-    """Make the report of a run: one HTML file that needs nothing else, and prints well.
+    """Make the report of a run or a fit: one HTML file that needs nothing else, and prints well.
 
     The first page is what is signed: drive, load case, both verdicts, six numbers, limits; after it
     layout, page of the run, diagrams, inputs with their sources, replay, scene, build. What the
@@ -53,7 +48,8 @@ def report(
     ----------
     source
         A run; or a drive, or the file of a scene, which is simulated for it with its own settings
-        and all channels; or the store of a result.
+        and all channels; or the store of a result. Or what `calibrate` returned: then the page has
+        its tables, diagrams of intervals, correlations and residuals, and the fitted scene.
     path
         Where to write, in place of what was there; absent: nowhere.
     comparison
@@ -90,7 +86,11 @@ def _report(
 ) -> str:
     # Missed before anything is simulated.
     extra("matplotlib.pyplot", "plots")
-    return _document(_run(source), comparison, reference)
+    if isinstance(source, xr.Dataset) and "estimate" in source:
+        from chaindrive.measurement.fit_report import fit_report
+
+        return fit_report(source)
+    return _of_run(_run(source), comparison, reference)
 
 
 def _run(source: Drive | xr.Dataset | str | PathLike[str]) -> xr.Dataset:
@@ -106,7 +106,7 @@ def _run(source: Drive | xr.Dataset | str | PathLike[str]) -> xr.Dataset:
     return simulate(source, record="all", events=["teeth"])
 
 
-def _document(run: xr.Dataset, comparison: xr.Dataset | None, reference: xr.Dataset | None) -> str:
+def _of_run(run: xr.Dataset, comparison: xr.Dataset | None, reference: xr.Dataset | None) -> str:
     about = run.attrs
     told = page_of(run)
     title = _title(run)
@@ -115,12 +115,12 @@ def _document(run: xr.Dataset, comparison: xr.Dataset | None, reference: xr.Data
         f"<h1>{escaped(title)}</h1>",
         front_page(run, told),
         section(verdict, level=2),
-        _picture("The drive at the start", lambda ax: _layout(run, ax)),
+        picture("The drive at the start", lambda ax: _layout(run, ax)),
         *(section(it, level=2) for it in sections),
         *_compared(comparison),
         *impulse_levels(run, reference),
         "<h2>Diagrams</h2>",
-        *(_picture(name, draw) for name, draw in _diagrams(run)),
+        *(picture(name, draw) for name, draw in _diagrams(run)),
         "<h2>Inputs and their sources</h2>",
         _inputs(str(about.get("resolved_scene", ""))),
         "<h2>Numerics</h2>",
@@ -136,14 +136,7 @@ def _document(run: xr.Dataset, comparison: xr.Dataset | None, reference: xr.Data
         )
         + "</p>",
     ]
-    style = (files("chaindrive") / "report.css").read_text(encoding="utf-8")
-    body = "\n".join(parts)
-    return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{escaped(title)}</title>\n<style>\n{style}</style>\n</head>\n"
-        f"<body>\n<main>\n{body}\n</main>\n</body>\n</html>\n"
-    )
+    return document(title, parts)
 
 
 def _compared(found: xr.Dataset | None) -> Iterator[str]:
@@ -161,7 +154,7 @@ def _compared(found: xr.Dataset | None) -> Iterator[str]:
             ("orders", plot.compared_orders),
             ("distribution", plot.distribution),
         ):
-            yield _picture(
+            yield picture(
                 f"{quantity}: {title}",
                 lambda ax, draw=draw, it=quantity: draw(found, it, ax=ax),  # type: ignore[misc]
             )
@@ -233,29 +226,6 @@ def _diagrams(run: xr.Dataset) -> Iterator[tuple[str, Callable[[Axes], object]]]
         ("Elongation by wear to the limit", plot.elongation),
     ):
         yield name, lambda ax, draw=draw: draw(run, ax=ax)  # type: ignore[misc]
-
-
-def _picture(title: str, draw: Callable[[Axes], object]) -> str:
-    """Return a diagram as a figure of the document, or the sentence that says why there is none."""
-    pyplot = extra("matplotlib.pyplot", "plots")
-    from chaindrive.plot.scheme import STYLE
-
-    with pyplot.rc_context(dict(STYLE)):
-        figure, ax = pyplot.subplots(figsize=_SIZE, layout="constrained")
-        try:
-            draw(ax)
-            drawn = io.BytesIO()
-            figure.savefig(drawn, format="png", dpi=_DOTS)
-        except (ChaindriveError, ModuleNotFoundError) as reason:
-            return f"<h3>{escaped(title)}</h3>\n<p>{escaped(str(reason))}</p>"
-        finally:
-            pyplot.close(figure)
-    data = b64encode(drawn.getvalue()).decode("ascii")
-    caption = escaped(title)
-    return (
-        f'<figure><img src="data:image/png;base64,{data}" alt="{caption}">'
-        f"<figcaption>{caption}</figcaption></figure>"
-    )
 
 
 #: A line of a scene in full: key, value, and after them its unit and source.

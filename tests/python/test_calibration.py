@@ -1,6 +1,8 @@
 """Parameters fitted to records that are made of runs, so that what is true is known."""
 
+import csv
 import json
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +10,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 from scipy.signal import lfilter
+from scipy.stats import t as student
 
 import chaindrive as cd
 from chaindrive.measurement.free import open_to
@@ -97,6 +100,85 @@ def test_a_resumed_fit_computes_nothing_twice(
     assert again.attrs["scene"] == fit.attrs["scene"]
 
 
+SLOW_SHAFT = {"sprockets.driver.motion.speed": "200 rpm"}
+FORETOLD = ["span_tension_mean[driven-driver]", "span_tension_std[driven-driver]"]
+
+
+@pytest.fixture(scope="module")
+def foretold(fit: xr.Dataset) -> xr.Dataset:
+    outputs = [*FORETOLD, "loss_share", "sprocket_power_mean[driver]"]
+    return cd.predict(fit, outputs, at=SLOW_SHAFT, until=0.1)
+
+
+@pytest.mark.costs("a fit is some twenty runs")
+def test_a_prediction_holds_the_truth_at_another_speed(foretold: xr.Dataset) -> None:
+    """The truth from another phase, with another step; with the load unfitted it is missed."""
+    assert (foretold["verdict"] == "foretold").all(), foretold.attrs["summary"]
+    true, unfitted = (
+        cd.sweep(
+            it.replace(SLOW_SHAFT), {"route.phase": [0.37]}, until=0.1, method="verlet", step=6e-6
+        )
+        for it in (drive().replace({LOAD: TRUTH[LOAD]}), drive())
+    )
+    for name in FORETOLD:
+        statistic, _, span = name.removesuffix("]").partition("[")
+        row = foretold.sel(output=name)
+        value = float(true[statistic].sel(span=span)[0])
+        assert float(row["lower"]) < value < float(row["upper"]), name
+    mean = foretold.sel(output=FORETOLD[0])
+    assert float(unfitted["span_tension_mean"].sel(span="driven-driver")[0]) > float(mean["upper"])
+    assert "0.667 times" in foretold.attrs["reach"]
+
+
+@pytest.mark.costs("a fit is some twenty runs")
+def test_the_band_is_made_of_its_parts(fit: xr.Dataset, foretold: xr.Dataset) -> None:
+    """P = M ω n, so one error of the torque moves the power by as much; Student's t by SciPy."""
+    error = float(fit.sel(parameter=LOAD)["error"])
+    power = foretold.sel(output="sprocket_power_mean[driver]")
+    omega = 200.0 * 2.0 * np.pi / 60.0 * 19.0 / 57.0
+    assert float(power["parameter_error"]) == pytest.approx(error * omega, rel=0.02)
+    total = np.hypot(foretold["parameter_error"], foretold["run_error"])
+    width = student.ppf(0.975, foretold["freedom"]) * total
+    wanted = width + foretold["numerical"] + foretold["bending"]
+    np.testing.assert_allclose(foretold["half_width"], wanted, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"at": {LOAD: -1500.0}}, "it is fitted"),
+        ({"at": {"sprockets.driver.motion.speed": "2000 rpm"}}, "out of reach of a fit at 31.4"),
+        ({"at": {"sprockets.driver.motion.speed": "-300 rpm"}}, "out of reach"),
+        ({"at": {"sprockets.driver.speed": 3.0}}, "cannot take it"),
+        ({"at": {"contact.joints.friction": "none"}}, "another model"),
+        ({"phases": [0.5]}, "tells no scatter"),
+        ({"drive": cd.scenes.spinning_ring()}, "cannot take it"),
+    ],
+)
+def test_a_prediction_is_refused_with_a_reason(
+    fit: xr.Dataset, change: dict[str, object], words: str
+) -> None:
+    with pytest.raises(cd.MeasurementError, match=words):
+        cd.predict(fit, **change)
+
+
+def test_a_fit_that_was_refused_foretells_nothing(fit: xr.Dataset) -> None:
+    refused = fit.assign_attrs(verdict="refused", reasons=["physics are missing"])
+    with pytest.raises(cd.MeasurementError, match="foretells nothing: physics are missing"):
+        cd.predict(refused)
+    with pytest.raises(cd.MeasurementError, match="was kept, and foretells nothing"):
+        cd.predict(fit.assign_attrs(validation="misses"))
+    with pytest.raises(cd.MeasurementError, match="this is no fit"):
+        cd.predict(xr.Dataset())
+
+
+@pytest.mark.costs("a fit is some twenty runs")
+def test_a_wide_band_is_no_prediction(fit: xr.Dataset) -> None:
+    with pytest.warns(cd.MeasurementWarning, match="the band is"):
+        found = cd.predict(fit, FORETOLD, until=0.01, telling=1e-4, phases=(0.1, 0.6))
+    assert (found["verdict"] == "cannot tell").all()
+
+
 @pytest.mark.parametrize(
     ("free", "words"),
     [
@@ -163,39 +245,53 @@ FOUR = {
 }
 
 
+def draws_of(name: str) -> list[dict[str, str]]:
+    """Forty draws of a table, which was made before anybody had seen a record of it."""
+    text = (Path(__file__).parent / name).read_text(encoding="utf-8")
+    draws = list(csv.DictReader(text.splitlines()))
+    assert len(draws) == 40
+    return draws
+
+
+def record_of(rig: cd.Drive, draw: dict[str, str], seconds: float) -> xr.Dataset:
+    """A record of a rig, its gains off by 1 %, its noise correlated in time."""
+    rng = np.random.default_rng(int(draw["noise"]))
+    settings = {"until": seconds, "every": 4e-4, "step": 7e-6, "method": "verlet", "run_in": 0.6}
+    run = cd.simulate(rig, record=CHANNELS, error=False, **settings).isel(time=slice(0, -1))
+    places = {
+        "tight": ("span_tension", {"span": "driven-driver"}, 20.0),
+        "slack": ("span_tension", {"span": "driver-driven"}, 5.0),
+        "torque": ("sprocket_torque", {"sprocket": "driver"}, 1.0),
+    }
+    table, channels = {"time [s]": run["time"].to_numpy()}, {}
+    for name, (quantity, at, size) in places.items():
+        white = rng.standard_normal(run.sizes["time"])
+        noise = size * lfilter([np.sqrt(1.0 - 0.9**2)], [1.0, -0.9], white)
+        unit = "N" if quantity == "span_tension" else "N m"
+        gain = float(draw[f"gain_{name}"])
+        table[f"{name} [{unit}]"] = gain * run[quantity].sel(at).to_numpy() + noise
+        place = next(iter(at.values()))
+        channels[name] = {"quantity": f"{quantity}[{place}]", "gain_uncertainty": 0.01}
+    speed = rig.resolved().to_dict()["sprockets"][0]["motion"]["speed"]
+    turns = {"driver": f"{speed} rad/s"}
+    return cd.measured(pd.DataFrame(table), channels=channels, turns=turns)
+
+
 @pytest.mark.slow
 def test_intervals_of_forty_records_hold_the_truth() -> None:
     """Gains off by 1 %, noise correlated in time, another step, phase and sampling.
 
+    Truths, phases, gains and seeds of the noise were drawn before any of these records was seen,
+    from ``numpy.random.default_rng(SeedSequence(20261128))``; they stand in a table.
     A right program has 33 of 40 or more with a probability of 0.9993 for each parameter.
     """
     hits, refused = dict.fromkeys(FOUR, 0), 0
-    for number in range(40):
-        rng = np.random.default_rng(1000 + number)
-        truth = {
-            path: rng.uniform(0.8 * a + 0.2 * b, 0.2 * a + 0.8 * b) for path, (a, b) in FOUR.items()
-        }
-        gains = 1.0 + 0.01 * rng.standard_normal(3)
+    for number, draw in enumerate(draws_of("forty_records.csv")):
+        truth = {path: float(draw[path]) for path in FOUR}
         rig = cd.scenes.industrial_16b()
         # As a fit reads the paths: the kind of friction stays.
-        true = open_to(rig, truth).replace(truth | {"route.phase": rng.uniform()})
-        settings = {"until": 1.0, "every": 4e-4, "step": 7e-6, "method": "verlet", "run_in": 0.6}
-        run = cd.simulate(true, record=CHANNELS, error=False, **settings).isel(time=slice(0, -1))
-        places = {
-            "tight": ("span_tension", {"span": "driven-driver"}, 20.0),
-            "slack": ("span_tension", {"span": "driver-driven"}, 5.0),
-            "torque": ("sprocket_torque", {"sprocket": "driver"}, 1.0),
-        }
-        table, channels = {"time [s]": run["time"].to_numpy()}, {}
-        for gain, (name, (quantity, at, size)) in zip(gains, places.items(), strict=True):
-            white = rng.standard_normal(run.sizes["time"])
-            noise = size * lfilter([np.sqrt(1.0 - 0.9**2)], [1.0, -0.9], white)
-            unit = "N" if quantity == "span_tension" else "N m"
-            table[f"{name} [{unit}]"] = gain * run[quantity].sel(at).to_numpy() + noise
-            place = next(iter(at.values()))
-            channels[name] = {"quantity": f"{quantity}[{place}]", "gain_uncertainty": 0.01}
-        data = cd.measured(pd.DataFrame(table), channels=channels, turns={"driver": "300 rpm"})
-        found = cd.calibrate(rig, data, FOUR)
+        true = open_to(rig, truth).replace(truth | {"route.phase": float(draw["phase"])})
+        found = cd.calibrate(rig, record_of(true, draw, 1.0), FOUR)
         refused += found.attrs["verdict"] == "refused"
         for path, value in truth.items():
             row = found.sel(parameter=path)
@@ -203,3 +299,42 @@ def test_intervals_of_forty_records_hold_the_truth() -> None:
         print(number, found.attrs["verdict"], hits)
     assert min(hits.values()) >= 33, hits
     assert refused <= 4
+
+
+#: Operating points of the study of predictions: half of the speed and load, and all of them.
+HALF = {"sprockets.driver.motion.speed": "150 rpm", LOAD: -716.2}
+FULL = {"sprockets.driver.motion.speed": "300 rpm", LOAD: -1432.4}
+
+
+@pytest.mark.slow
+def test_bands_of_forty_predictions_hold_the_truth() -> None:
+    """Fitted at half the speed and load; the truth at all of them, from another phase and step.
+
+    Draws of a table of their own, as those of the fits, of SeedSequence(20261129).
+    """
+    outputs = [*FORETOLD, "loss_share"]
+    hits, refused = dict.fromkeys(outputs, 0), 0
+    three = {path: FOUR[path] for path in FOUR if path != LOAD}
+    for number, draw in enumerate(draws_of("forty_predictions.csv")):
+        truth = {path: float(draw[path]) for path in three}
+        rig = cd.scenes.industrial_16b().replace(HALF)
+        true = open_to(rig, truth).replace(truth | {"route.phase": float(draw["phase"])})
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", cd.MeasurementWarning)
+            fit = cd.calibrate(rig, record_of(true, draw, 1.0), three)
+            if fit.attrs["verdict"] == "refused" or fit.attrs["validation"] == "misses":
+                refused += 1
+                continue
+            foretold = cd.predict(fit, outputs, at=FULL, until=1.0)
+        there = true.replace(FULL)
+        phase = {"route.phase": [float(draw["phase_there"])]}
+        settings = {"until": 1.0, "run_in": 0.6, "method": "verlet", "step": 7e-6}
+        seen = cd.sweep(there, phase, **settings)
+        for name in outputs:
+            statistic, _, span = name.removesuffix("]").partition("[")
+            lost, given = seen["energy_dissipated_total"], seen["energy_supplied_total"]
+            value = float((lost / given if not span else seen[statistic].sel(span=span))[0])
+            row = foretold.sel(output=name)
+            hits[name] += float(row["lower"]) < value < float(row["upper"])
+        print(number, hits, refused)
+    assert min(hits.values()) >= 33, hits

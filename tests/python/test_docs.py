@@ -16,7 +16,11 @@ FILES = [
     file for file in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))] if file.exists()
 ]
 # Packages that nothing but the blocks of a page take.
-TAKES = {"sweep-recipes.md": ["SALib", "optuna", "scipy"], "command-line.md": ["pyarrow"]}
+TAKES = {
+    "assumptions.md": ["SALib"],
+    "sweep-recipes.md": ["SALib", "optuna", "scipy"],
+    "command-line.md": ["pyarrow"],
+}
 # Lengths of runs that pages are read with, and those that show as much of whether they run.
 SHORTER = {
     "README.md": {"until=0.5": "until=0.02, run_in=0"},
@@ -34,7 +38,11 @@ SHORTER = {
         '    until=0.06,\n    store="fit",\n': "    until=0.06,\n    starts=1,\n",
         "until=0.4, every=5e-5": "until=0.25, every=5e-5",
         'cd.report(run, "report.html", comparison=found)': "pass",
+        "drive = cd.scenes.industrial_16b()": "drive = cd.scenes.industrial_16b()"
+        '.replace({"run.run_in": "50 ms"})',
+        "    until=0.1,\n": "    until=0.02,\n    phases=(0.1, 0.6),\n",
     },
+    "assumptions.md": {'"20 ms"': "0", "until=0.02": "until=2e-3", "until=0.01": "until=1e-3"},
     "wear-and-fatigue.md": {"run_in=0.2, until=0.1": "run_in=0.05, until=0.1"},
 }
 BLOCK = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)

@@ -82,6 +82,10 @@ enum Verb {
     Report(report::Arguments),
     CheckData(measurement::CheckData),
     Compare(measurement::Compare),
+    Calibrate(measurement::Calibrate),
+    Predict(measurement::Predict),
+    Uncertainty(measurement::Uncertainty),
+    Tornado(measurement::Tornado),
     Sweep(sweep::Arguments),
     Bench(bench::Arguments),
     Check(check::Arguments),
@@ -138,6 +142,10 @@ where
     match parsed.verb? {
         Verb::CheckData(arguments) => Some(("check-data", measurement::options(&arguments)?)),
         Verb::Compare(arguments) => Some(("compare", measurement::options(&arguments)?)),
+        Verb::Calibrate(arguments) => Some(("calibrate", measurement::options(&arguments)?)),
+        Verb::Predict(arguments) => Some(("predict", measurement::options(&arguments)?)),
+        Verb::Uncertainty(arguments) => Some(("uncertainty", measurement::options(&arguments)?)),
+        Verb::Tornado(arguments) => Some(("tornado", measurement::options(&arguments)?)),
         _ => None,
     }
 }
@@ -205,6 +213,10 @@ fn carry_out(
         Verb::Report(arguments) => report::report(arguments),
         Verb::CheckData(_) => Err(measurement::elsewhere("check-data")),
         Verb::Compare(_) => Err(measurement::elsewhere("compare")),
+        Verb::Calibrate(_) => Err(measurement::elsewhere("calibrate")),
+        Verb::Predict(_) => Err(measurement::elsewhere("predict")),
+        Verb::Uncertainty(_) => Err(measurement::elsewhere("uncertainty")),
+        Verb::Tornado(_) => Err(measurement::elsewhere("tornado")),
         Verb::Sweep(arguments) => sweep::sweep(arguments, interrupted),
         Verb::Bench(arguments) => bench::bench(arguments, interrupted),
         Verb::Check(arguments) => check::check(arguments, interrupted),

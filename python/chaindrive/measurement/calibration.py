@@ -24,7 +24,7 @@ from chaindrive.measurement.free import FreeParameter, free_parameters, open_to
 from chaindrive.measurement.identifiability import identifiability
 from chaindrive.measurement.provenance import fitted_drive
 from chaindrive.measurement.series import channel_names
-from chaindrive.measurement.telling import told_calibration
+from chaindrive.measurement.telling import texts, told_calibration
 from chaindrive.measurement.validating import Kept, validated
 from chaindrive.progress import told
 from chaindrive.settings import Quantity
@@ -416,9 +416,9 @@ def _dataset(
         "eigenvalue": ("direction", eigenvalues, {"units": "1"}),
     }
     coordinates: dict[str, Any] = {
-        "parameter": _texts(it.path for it in parameters),
-        "parameter_2": _texts(it.path for it in parameters),
-        "feature": _texts(errors.names),
+        "parameter": texts(it.path for it in parameters),
+        "parameter_2": texts(it.path for it in parameters),
+        "feature": texts(errors.names),
     }
     if kept is not None:
         attributes["validation_p_value"] = kept.p_value
@@ -429,7 +429,7 @@ def _dataset(
             "kept_error": ("kept_feature", kept.error),
             "kept_residual": ("kept_feature", (kept.simulated - kept.measured) / kept.error),
         }
-        coordinates["kept_feature"] = _texts(kept.names)
+        coordinates["kept_feature"] = texts(kept.names)
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
 
 
@@ -457,7 +457,3 @@ def _scenes(
         "scene_name": scenes[0].name,
         "scenes": json.dumps([it.text for it in scenes]),
     }
-
-
-def _texts(texts: Any) -> Any:
-    return np.asarray(list(texts), dtype=np.str_)

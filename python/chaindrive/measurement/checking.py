@@ -27,7 +27,7 @@ from chaindrive.measurement.lines import mesh_lines
 from chaindrive.measurement.quantities import MeasuredQuantity
 from chaindrive.measurement.sensitivities import Sensitivities, sensitivities
 from chaindrive.measurement.series import channel_names, measured_series, sensor_of
-from chaindrive.measurement.telling import as_text
+from chaindrive.measurement.telling import as_text, number, texts
 from chaindrive.measurement.time_base import Finding
 from chaindrive.progress import told
 from chaindrive.settings import Quantity
@@ -43,6 +43,8 @@ _LONGEST = 1.0
 _DENSER = 4
 #: Standard error over half the range that a record is to reach [–] (assumed).
 _WANTED = 0.1
+#: Bending that is told [–] (assumed): errors of a fit are then those near the start alone.
+_BENT = 0.2
 #: Slips of units that are looked for where means differ: their factors, and what they are.
 _SLIPS: tuple[tuple[float, str], ...] = (
     (1000.0, "kilo"),
@@ -108,7 +110,9 @@ def check_data(
         ``quantity``, ``measured_mean``, ``simulated_mean`` [unit of the channel], ``unit`` and
         ``problem`` (channel,). With `free` ``start``, ``low``, ``high``, ``error`` (the standard
         error that a fit would have), ``length`` [s] (of a record that leaves a tenth of half the
-        range) and ``effect`` (of half the range in standard errors of the record) (parameter,);
+        range), ``effect`` (of half the range in standard errors of the record), ``step`` of the
+        differences (as a share of half the range) and ``bending`` (what differences over a fifth of
+        half the range and over less differ by, over their size) (parameter,);
         ``information``, ``correlation`` (parameter, parameter_2); ``eigenvalue`` of the information
         with a unit diagonal, ``eigenvalue_floor`` (what noise makes of it) (direction,) and
         ``direction`` (parameter, direction); ``sensitivity`` (feature, parameter) and
@@ -259,14 +263,14 @@ def _dataset(
     variables: dict[str, Any] = {
         "quantity": (
             "channel",
-            _texts("" if it.quantity is None else str(it.quantity) for it in rows),
+            texts("" if it.quantity is None else str(it.quantity) for it in rows),
         ),
-        "unit": ("channel", _texts(it.unit for it in rows)),
+        "unit": ("channel", texts(it.unit for it in rows)),
         "measured_mean": ("channel", [it.measured for it in rows]),
         "simulated_mean": ("channel", [it.simulated for it in rows]),
-        "problem": ("channel", _texts(it.problem for it in rows)),
+        "problem": ("channel", texts(it.problem for it in rows)),
     }
-    coordinates: dict[str, Any] = {"channel": _texts(it.name for it in rows)}
+    coordinates: dict[str, Any] = {"channel": texts(it.name for it in rows)}
     problems = [f"{it.name} {it.problem}" for it in rows if it.problem] + [
         str(it) for it in findings
     ]
@@ -283,6 +287,8 @@ def _dataset(
             "high": (one, [it.high for it in found.parameters]),
             "error": (one, found.errors),
             "length": (one, length, {"units": "s"}),
+            "step": (one, moved.steps, {"units": "1"}),
+            "bending": (one, moved.bending, {"units": "1"}),
             "effect": (one, np.sqrt(np.diag(found.information)), {"units": "1"}),
             "information": (two, found.information, {"units": "1"}),
             "correlation": (two, found.correlation, {"units": "1"}),
@@ -292,21 +298,17 @@ def _dataset(
             "sensitivity": (("feature", "parameter"), moved.jacobian),
             "feature_error": ("feature", np.sqrt(np.diag(moved.covariance))),
         }
-        paths = _texts(it.path for it in found.parameters)
-        coordinates |= {"parameter": paths, "parameter_2": paths, "feature": _texts(moved.features)}
+        paths = texts(it.path for it in found.parameters)
+        coordinates |= {"parameter": paths, "parameter_2": paths, "feature": texts(moved.features)}
         attributes |= {
             "identified": int(found.is_identified),
             "silent": [it.path for it in found.silent],
             "combinations": [words for *_, words in found.combinations],
         }
-        sections.append(_identified(found, length, seconds))
+        sections.append(_identified(found, length, seconds, moved.bending))
     attributes["summary"] = as_text(sections)
     attributes["page"] = json.dumps({"sections": sections})
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
-
-
-def _texts(texts: Any) -> Any:
-    return np.asarray(list(texts), dtype=np.str_)
 
 
 def _channels(
@@ -317,8 +319,8 @@ def _channels(
             it.name,
             "–" if it.quantity is None else str(it.quantity),
             it.unit or "–",
-            _number(it.measured),
-            _number(it.simulated),
+            number(it.measured),
+            number(it.simulated),
             it.problem or "fits",
         ]
         for it in rows
@@ -333,7 +335,9 @@ def _channels(
     }
 
 
-def _identified(found: Identifiability, length: _Floats, seconds: float) -> dict[str, Any]:
+def _identified(
+    found: Identifiability, length: _Floats, seconds: float, bending: _Floats
+) -> dict[str, Any]:
     rows = []
     effect = np.sqrt(np.diag(found.information))
     for it, error, own, needed in zip(found.parameters, found.errors, effect, length, strict=True):
@@ -346,15 +350,20 @@ def _identified(found: Identifiability, length: _Floats, seconds: float) -> dict
         rows.append(
             [
                 it.path,
-                _number(it.low),
-                _number(it.high),
-                _number(own),
-                _number(error),
-                _number(needed),
+                number(it.low),
+                number(it.high),
+                number(own),
+                number(error),
+                number(needed),
                 so,
             ]
         )
     words = [f"The record lasts {seconds:.4g} s; errors fall with the root of its length."]
+    words += [
+        f"What {it.path} moves bends: over a fifth of half its range by {100.0 * bent:.0f} %."
+        for it, bent in zip(found.parameters, bending, strict=True)
+        if bent > _BENT
+    ]
     words += [
         f"Not identified: {words_of}; scaled eigenvalue {value:.1e}, must exceed {least:.1e}."
         for value, least, words_of in found.combinations
@@ -373,7 +382,3 @@ def _identified(found: Identifiability, length: _Floats, seconds: float) -> dict
         "rows": rows,
         "sentences": words,
     }
-
-
-def _number(value: float) -> str:
-    return f"{value:.4g}" if math.isfinite(value) else "–"

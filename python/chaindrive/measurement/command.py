@@ -1,4 +1,4 @@
-"""The commands `check-data` and `compare`, which the core leaves to this package."""
+"""The commands of measurements and assumptions, which the core leaves to this package."""
 
 from __future__ import annotations
 
@@ -6,10 +6,8 @@ import json
 import math
 import os
 import sys
-import tomllib
 import warnings
 from collections.abc import Mapping
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +16,7 @@ import xarray as xr
 
 from chaindrive import _core
 from chaindrive._core import NewFile
-from chaindrive.drive import Drive, load
+from chaindrive.assumptions.command import ranked, spread
 from chaindrive.errors import (
     ChaindriveError,
     MeasurementError,
@@ -28,37 +26,39 @@ from chaindrive.errors import (
     WriteError,
     tell,
 )
+from chaindrive.measurement.arguments import drive_of, is_seen, ranges_of, record_of, rows_of
 from chaindrive.measurement.checking import check_data, run_for
 from chaindrive.measurement.comparison import compare
-from chaindrive.measurement.record import measured
-from chaindrive.reporting import named, report
+from chaindrive.measurement.fit_command import calibrated, foretold
+from chaindrive.reporting import report
 from chaindrive.results import open_result
 
 __all__ = ["command"]
 
 _BAD_INPUT, _NOT_WRITTEN = 2, 3
-#: Arguments of `measured` that a rig file may have.
-_RIG = ("channels", "turns", "time", "rate", "start", "until", "orders")
-_RIG_TEXT = ("encoding", "decimal", "separator")
 
 
 def command(verb: str, options: Mapping[str, Any]) -> int:
-    """Do what a command line asks about a measurement, and return the exit code.
+    """Do what a command line asks of this package, and return the exit code.
 
     Parameters
     ----------
     verb
-        ``check-data`` or ``compare``.
+        ``check-data``, ``compare``, ``calibrate``, ``predict``, ``uncertainty`` or ``tornado``.
     options
         Its options by name, as the core has read them.
     """
-    does = {"check-data": _check, "compare": _compare}[verb]
+    does = _VERBS[verb]
     try:
         with warnings.catch_warnings():
             # The page tells them.
             warnings.simplefilter("ignore", MeasurementWarning)
             page, answer = does(options)
-    except (ProgramError, KeyboardInterrupt):
+    except ProgramError:
+        raise
+    except KeyboardInterrupt:
+        if options.get("store") is not None:
+            tell(f"{options['store']} holds what was computed: the same command goes on")
         raise
     except WriteError as error:
         return _refused(options, error, _NOT_WRITTEN)
@@ -95,62 +95,17 @@ def _refused(options: Mapping[str, Any], error: Exception, code: int) -> int:
     return code
 
 
-def _record(options: Mapping[str, Any]) -> xr.Dataset:
-    """Return the measurement, read as the rig file says."""
-    rig: dict[str, Any] = {}
-    if options["rig"] is not None:
-        place = Path(options["rig"])
-        try:
-            rig = tomllib.loads(place.read_text(encoding="utf-8"))
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise MeasurementError(f"{place}: this is no TOML: {error}", place) from error
-        known = (*_RIG, *_RIG_TEXT)
-        strange = [it for it in rig if it not in known]
-        if strange:
-            message = f"{place}: a rig has no {strange[0]!r}"
-            raise MeasurementError(message, place, f"it has {', '.join(known)}")
-    return measured(options["data"], **rig)
-
-
-def _drive(source: str) -> Drive:
-    found = named(source)
-    return found if isinstance(found, Drive) else load(found)
-
-
-def _free(texts: list[str]) -> dict[str, tuple[Any, Any]] | None:
-    """Return bounds by path, of texts such as ``chain.stiffness=10 MN/m..40 MN/m``."""
-    found = {}
-    for text in texts:
-        path, _, bounds = text.partition("=")
-        low, dots, high = bounds.partition("..")
-        if not (path and dots):
-            message = f"--free {text}: this is no path and two bounds"
-            raise MeasurementError(
-                message, "free", 'such as --free "chain.stiffness=10 MN/m..40 MN/m"'
-            )
-        found[path.strip()] = (_number(low), _number(high))
-    return found or None
-
-
-def _number(text: str) -> Any:
-    try:
-        return float(text)
-    except ValueError:
-        return text.strip()
-
-
 def _check(options: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
-    data = _record(options)
-    # A bar is shown where somebody can see it, and its package is there.
-    seen = sys.stderr.isatty() and find_spec("tqdm") is not None
-    drive = _drive(options["source"])
-    found = check_data(drive, data, _free(options["free"]), progress=seen)
+    data = record_of(options)
+    drive = drive_of(options)
+    free = ranges_of("free", options["free"]) or None
+    found = check_data(drive, data, free, progress=is_seen())
     answer: dict[str, Any] = {
         "measured_from": data.attrs["measured_from"],
         "findings": list(data.attrs["findings"]),
         "findings_note": data.attrs["findings_note"],
         "problems": list(found.attrs["problems"]),
-        "channels": _rows(
+        "channels": rows_of(
             found, "channel", ("quantity", "unit", "measured_mean", "simulated_mean", "problem")
         ),
     }
@@ -160,7 +115,7 @@ def _check(options: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
             "silent": list(found.attrs["silent"]),
             "combinations": list(found.attrs["combinations"]),
             "eigenvalues": found["eigenvalue"].to_numpy().tolist(),
-            "parameters": _rows(
+            "parameters": rows_of(
                 found, "parameter", ("start", "low", "high", "effect", "error", "length")
             ),
         }
@@ -175,12 +130,12 @@ def _compare(options: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
         if Path(options["output"]).suffix not in (".html", ".htm"):
             message = f"{options['output']}: the name must end in .html"
             raise MeasurementError(message, options["output"])
-    data = _record(options)
+    data = record_of(options)
     source = options["source"]
     if Path(source).suffix == ".zarr":
         run = open_result(source).load()
     else:
-        run, _ = run_for(_drive(source), data)
+        run, _ = run_for(drive_of(options), data)
     found = compare(run, data)
     if place is not None:
         place.write(report(run, comparison=found).encode())
@@ -216,10 +171,10 @@ def _of_quantity(found: xr.Dataset) -> dict[str, Any]:
         "channel": found["channel"].item(),
         "unit": found["unit"].item(),
         "verdict": found["verdict"].item(),
-        "statistics": _rows(found, "statistic", columns),
+        "statistics": rows_of(found, "statistic", columns),
     }
     if "order" in found.dims:
-        told["orders"] = _rows(
+        told["orders"] = rows_of(
             found,
             "order",
             (
@@ -233,18 +188,8 @@ def _of_quantity(found: xr.Dataset) -> dict[str, Any]:
             ),
         )
     if "line" in found.dims:
-        told["lines"] = _rows(found, "line", ("line_frequency", "mesh_frequency"))
+        told["lines"] = rows_of(found, "line", ("line_frequency", "mesh_frequency"))
     return told
-
-
-def _rows(found: xr.Dataset, dim: str, columns: tuple[str, ...]) -> list[dict[str, Any]]:
-    """Return columns along a dimension as a list of objects, its label first."""
-    labels = found[dim].to_numpy().tolist()
-    tables = [(name, found[name].to_numpy().tolist()) for name in columns]
-    return [
-        {dim: label} | {name: values[row] for name, values in tables}
-        for row, label in enumerate(labels)
-    ]
 
 
 def _plain(value: Any) -> Any:
@@ -256,3 +201,13 @@ def _plain(value: Any) -> Any:
     if isinstance(value, np.generic):
         value = value.item()
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+_VERBS = {
+    "check-data": _check,
+    "compare": _compare,
+    "calibrate": calibrated,
+    "predict": foretold,
+    "uncertainty": spread,
+    "tornado": ranked,
+}

@@ -108,7 +108,7 @@ class Evaluations:
         recorded = sorted(str(name) for name in run.data_vars if "time" in run[name].dims)
         self.settings: dict[str, Any] = {
             "until": float(run.attrs["until"]),
-            "run_in": float(run.attrs["run_in"]),
+            "run_in": float(run.attrs.get("run_in", 0.0)),
             "every": float(run.attrs["every"]),
             "record": recorded,
             **settings,

@@ -97,11 +97,11 @@ def differs(frozen: Mapping[str, Any], anew: Mapping[str, Any]) -> bool:
 
     Numbers may differ by 5 %. A run-in that is longer than it needs to be is as steady.
     """
-    step, run_in = float(frozen["step"]), float(frozen["run_in"])
+    step, run_in = float(frozen["step"]), float(frozen.get("run_in", 0.0))
     return (
         frozen["method"] != anew["method"]
         or abs(float(anew["step"]) - step) > 0.05 * step
-        or float(anew["run_in"]) > 1.05 * run_in
+        or float(anew.get("run_in", 0.0)) > 1.05 * run_in
     )
 
 

@@ -15,7 +15,7 @@ from chaindrive.measurement.amount import amount
 from chaindrive.measurement.sensor import NUISANCES
 from chaindrive.measurement.series import channel_names, sensor_of
 
-__all__ = ["FreeParameter", "free_parameters", "open_to"]
+__all__ = ["FreeParameter", "free_parameters", "open_to", "value_at"]
 
 #: A path of this beginning is a nuisance of a sensor: ``sensors.flange.gain``.
 _SENSORS = "sensors."
@@ -116,11 +116,11 @@ def open_to(drive: Drive, paths: Iterable[str]) -> Drive:
     opened = drive
     for path in paths:
         table, _, key = path.rpartition(".")
-        known = _at(full, table) if table and not path.startswith(_SENSORS) else None
+        known = value_at(full, table) if table and not path.startswith(_SENSORS) else None
         if not isinstance(known, Mapping) or key not in known:
             continue
         kind = known.get("kind")
-        written = _at(drive.to_dict(), table)
+        written = value_at(drive.to_dict(), table)
         if kind is None or (isinstance(written, Mapping) and "kind" in written):
             continue
         own = {} if not isinstance(written, Mapping) else dict(written)
@@ -150,7 +150,7 @@ def _of_scene(drive: Drive, scene: Mapping[str, Any], path: str, bounds: Any) ->
     ends = []
     for bound in bounds:
         try:
-            value = _at(drive.replace({path: bound}).resolved().to_dict(), path)
+            value = value_at(drive.replace({path: bound}).resolved().to_dict(), path)
         except SceneError as error:
             raise MeasurementError(f"free[{path!r}]: {error}", path) from error
         if isinstance(value, bool) or not isinstance(value, int | float):
@@ -167,7 +167,7 @@ def _of_scene(drive: Drive, scene: Mapping[str, Any], path: str, bounds: Any) ->
             path,
             "whole numbers, such as teeth and links, are not freed",
         ) from error
-    start = _at(scene, path)
+    start = value_at(scene, path)
     is_number = isinstance(start, int | float) and not isinstance(start, bool)
     return FreeParameter(path, ends[0], ends[1], float(start) if is_number else middle)
 
@@ -175,7 +175,7 @@ def _of_scene(drive: Drive, scene: Mapping[str, Any], path: str, bounds: Any) ->
 _STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")
 
 
-def _at(scene: Any, path: str) -> Any:
+def value_at(scene: Any, path: str) -> Any:
     """Return the value at a path of a resolved scene; None where it states none."""
     for name, number in _STEP.findall(path):
         if isinstance(scene, list):

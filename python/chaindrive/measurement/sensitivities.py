@@ -27,9 +27,9 @@ __all__ = [
 
 _Floats = NDArray[np.float64]
 
-#: Steps of central differences of two designs, as shares of half the range [–] (assumed: the effect
-#: of what matters exceeds the noise of a run, and is still a straight line).
-_STEPS = (0.2, 0.1)
+#: Longest step of central differences, as a share of half the range [–] (assumed: the effect of
+#: what matters exceeds the noise of a run), and the shortest: the numbers of a run are rough below.
+_COARSE, _LEAST = 0.2, 0.01
 #: Phases of the chain at the start of the two, after that of the drive [pitches]. What they differ
 #: by is noise and bending.
 _PHASES = (0.0, 0.37)
@@ -48,11 +48,30 @@ class Sensitivities(NamedTuple):
     """Change with half the range of a parameter (features, p) [unit of the feature]; zero in
     features in which that of any parameter does not stand out of its noise."""
     noise: _Floats
-    """Half of what two designs differ by (features, p) [unit of the feature]."""
+    """Half of what two designs differ by, and what bends over the step (features, p) [unit of the
+    feature]."""
     covariance: _Floats
     """Covariance of the features (features, features)."""
     features: list[str]
     """Names of the features, ``flange mean``."""
+    slopes: _Floats
+    """As `jacobian`, of all features (features, p)."""
+    scatter: _Floats
+    """As `noise`, of all features (features, p)."""
+    steps: _Floats
+    """Steps that were taken, as shares of half the range (p,) [–]; NaN of sensors."""
+    bending: _Floats
+    """What slopes over the longest and the shorter step differ by, over their size (p,) [–]."""
+
+
+class _Slopes(NamedTuple):
+    """Change of the features with half the range of a parameter, by one step."""
+
+    mean: _Floats
+    """(features,)"""
+    noise: _Floats
+    """Half of what two designs differ by (features,)."""
+    step: float
 
 
 def sensitivities(
@@ -64,9 +83,12 @@ def sensitivities(
 ) -> Sensitivities:
     """Return how features move with parameters.
 
-    ``∂y/∂θ ≈ (y(θ + h) − y(θ − h)) / 2h`` from runs that have all else in common: phase, start,
-    method, step, run-in, sampling. Two designs, of two h and from two phases of the chain, give the
-    noise; a feature counts only where the differences of all parameters are three times that.
+    ``∂y/∂θ ≈ (y(θ + h) − y(θ − h)) / 2h`` from runs that have all else in common: start, method,
+    step, run-in, sampling. Two designs, from two phases of the chain, give the noise; without a
+    phase, h and 2 h do. First h is a fifth of half the range, then what moves the record by about
+    one of its errors. Of the two each parameter takes the one whose slopes are known better: over
+    the longer step they may bend, over the shorter one noise counts more. A feature counts only
+    where the differences of all parameters are three times their noise.
 
     Parameters
     ----------
@@ -87,37 +109,64 @@ def sensitivities(
         A variant cannot be simulated.
     """
     base = features_of(how, None)
-    scene = [it for it in parameters if not it.is_of_sensor]
-    points = _points(drive, run, scene, tell) if scene else {}
-    columns, noises = [], []
-    for it in parameters:
-        if it.is_of_sensor:
-            low, _, high = it.around(_STEPS[0])
-            slopes = [_of_sensor(it, how, run, (low, high)) / (2.0 * _STEPS[0])]
-        else:
-            # ∂y/∂θ · (range/2) by central differences
-            slopes = [
-                (values_of(features_of(how, above)) - values_of(features_of(how, below)))
-                / (2.0 * step)
-                for step, (below, above) in zip(_STEPS, points[it.path], strict=False)
-            ]
-        columns.append(np.mean(slopes, axis=0))
-        noises.append(np.std(slopes, axis=0))
     freed = [it.sensor for it in parameters if it.is_of_sensor]
     covariance = covariance_of(how, base, run, freed)
-    jacobian, noise = np.stack(columns, axis=1), np.stack(noises, axis=1)
+    scene = [it for it in parameters if not it.is_of_sensor]
+
+    def size(rows: _Floats) -> float:
+        return _in_errors(rows, covariance)
+
+    def part(share: float, before: float) -> None:
+        if tell is not None:
+            tell(before + 0.5 * share)
+
+    coarse = dict.fromkeys((it.path for it in scene), _COARSE)
+    long = _slopes(drive, run, how, scene, coarse, lambda share: part(share, 0.0))
+    steps = {
+        path: min(max(1.0 / max(size(it.mean), 1e-9), _LEAST), 0.5 * _COARSE)
+        for path, it in long.items()
+    }
+    short = _slopes(drive, run, how, scene, steps, lambda share: part(share, 0.5))
+    chosen, bending = [], []
+    for it in parameters:
+        if it.is_of_sensor:
+            slope = _of_sensor(it, how, run, it.around(_COARSE)) / (2.0 * _COARSE)
+            chosen.append(_Slopes(slope, np.zeros_like(slope), np.nan))
+            bending.append(0.0)
+            continue
+        one, other = long[it.path], short[it.path]
+        # Over the longer step slopes err by what they bend, too.
+        bent = one._replace(noise=np.hypot(one.noise, one.mean - other.mean))
+        chosen.append(min((bent, other), key=lambda it: size(it.noise)))
+        bending.append(size(one.mean - other.mean) / max(size(other.mean), 1e-9))
+    jacobian = np.stack([it.mean for it in chosen], axis=1)
+    noise = np.stack([it.noise for it in chosen], axis=1)
     quiet = noise <= _QUIET * np.sqrt(np.diag(covariance))[:, None]
-    clear = ((np.abs(jacobian) > CLEAR * noise) | quiet).all(axis=1)
+    clear = np.all((np.abs(jacobian) > CLEAR * noise) | quiet, axis=1)
     return Sensitivities(
         np.where(clear[:, None], jacobian, 0.0),
         np.where(clear[:, None], noise, 0.0),
         covariance,
         [f"{it.channel} {it.name}" for it in base],
+        jacobian,
+        noise,
+        np.array([it.step for it in chosen]),
+        np.array(bending),
     )
 
 
+def _in_errors(rows: _Floats, covariance: _Floats) -> float:
+    """Return the size of a change of features in standard errors of the record [–]."""
+    own = np.diag(covariance)
+    known = np.isfinite(own) & (own > 0.0) & np.isfinite(rows)
+    if not known.any():
+        return 0.0
+    root = np.linalg.cholesky(covariance[np.ix_(known, known)])
+    return float(np.linalg.norm(np.linalg.solve(root, rows[known])))
+
+
 def _of_sensor(
-    it: FreeParameter, how: Sequence[Reading], run: xr.Dataset, ends: tuple[float, float]
+    it: FreeParameter, how: Sequence[Reading], run: xr.Dataset, ends: tuple[float, float, float]
 ) -> _Floats:
     """Return what a nuisance moves between two values: one run does, read by two sensors."""
     channel, name = it.sensor
@@ -125,49 +174,61 @@ def _of_sensor(
     if sensor is None:
         return np.zeros(len(features_of(how, None)))
     below, above = (
-        values_of(features_of(how, run, {channel: sensor.replace(**{name: at})})) for at in ends
+        values_of(features_of(how, run, {channel: sensor.replace(**{name: at})}))
+        for at in (ends[0], ends[2])
     )
     return np.asarray(above - below)
 
 
-def _points(
+def _slopes(
     drive: Drive,
     run: xr.Dataset,
+    how: Sequence[Reading],
     parameters: Sequence[FreeParameter],
-    tell: Callable[[float], object] | None,
-) -> dict[str, list[tuple[xr.Dataset, xr.Dataset]]]:
-    """Return the runs below and above of every parameter, of every design."""
-    middles = {it.path: it.around(_STEPS[0])[1] for it in parameters}
+    steps: Mapping[str, float],
+    tell: Callable[[float], object],
+) -> dict[str, _Slopes]:
+    """Return the slopes of every parameter by one step each, of two designs."""
+    if not parameters:
+        return {}
+    phases = starts(drive)
+    designs = [(it, 1.0) for it in phases] if len(phases) > 1 else [({}, 1.0), ({}, 2.0)]
+    middles = {it.path: it.around(_COARSE * designs[-1][1])[1] for it in parameters}
     rows: list[dict[str, float]] = []
-    designs = starts(drive)
-    for start, step in zip(designs, _STEPS, strict=False):
+    for start, factor in designs:
         for it in parameters:
-            low, high = (middles[it.path] + sign * step * it.half_range for sign in (-1, 1))
-            rows += [middles | start | {it.path: low}, middles | start | {it.path: high}]
+            step = factor * steps[it.path] * it.half_range
+            # Below, then above.
+            rows += [middles | start | {it.path: middles[it.path] + by} for by in (-step, step)]
     recorded: Any = [str(name) for name in run.data_vars if "time" in run[name].dims]
     found = sweep(
         drive,
         design={path: [row[path] for row in rows] for path in rows[0]},
         until=float(run.attrs["until"]),
-        run_in=float(run.attrs["run_in"]),
+        run_in=float(run.attrs.get("run_in", 0.0)),
         every=float(run.attrs["every"]),
         record=recorded,
-        progress=tell if tell is not None else False,
+        progress=tell,
         **settings_for(drive, run, rows),
     )
     failed = [str(it) for it in found["error"].to_numpy() if it]
     if failed:
         message = f"a variant within the bounds cannot be simulated: {failed[0]}"
         raise SimulationError(message, "free")
-    runs = [as_run(found.isel(variant=row), run) for row in range(len(rows))]
+    values = [
+        values_of(features_of(how, as_run(found.isel(variant=row), run)))
+        for row in range(len(rows))
+    ]
     count = len(parameters)
-    return {
-        it.path: [
-            (runs[2 * (design * count + n)], runs[2 * (design * count + n) + 1])
-            for design in range(len(designs))
-        ]
-        for n, it in enumerate(parameters)
-    }
+    slopes = {}
+    for n, it in enumerate(parameters):
+        own = []
+        for design, (_, factor) in enumerate(designs):
+            at = 2 * (design * count + n)
+            # ∂y/∂θ · (range/2) by central differences
+            own.append((values[at + 1] - values[at]) / (2.0 * factor * steps[it.path]))
+        slopes[it.path] = _Slopes(np.mean(own, axis=0), np.std(own, axis=0), steps[it.path])
+    return slopes
 
 
 def starts(drive: Drive) -> list[dict[str, float]]:

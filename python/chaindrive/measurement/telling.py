@@ -7,6 +7,7 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import xarray as xr
 
 from chaindrive import _core
@@ -15,7 +16,7 @@ from chaindrive.plot.units import in_trade
 if TYPE_CHECKING:
     from chaindrive.measurement.comparison import Compared
 
-__all__ = ["as_text", "told_calibration", "told_comparison"]
+__all__ = ["as_text", "number", "texts", "told_calibration", "told_comparison"]
 
 _WORDS = {
     "mean": "mean",
@@ -87,8 +88,8 @@ def _of_quantity(it: Compared) -> dict[str, Any]:
         rows = [
             [
                 f"{line.multiple} × mesh",
-                _number(line.found),
-                _number(line.expected),
+                number(line.found),
+                number(line.expected),
                 "–"
                 if not math.isfinite(line.found)
                 else f"{100 * (line.found / line.expected - 1):+.3f}",
@@ -108,14 +109,14 @@ def _of_quantity(it: Compared) -> dict[str, Any]:
     rows = [
         [
             name,
-            _number(factor * one),
-            _number(factor * other),
-            _number(factor * (other - one)),
-            _number(factor * band.half_width),
-            _number(factor * band.numerical),
-            _number(factor * band.simulated),
-            _number(factor * band.measured),
-            _number(factor * band.sensor),
+            number(factor * one),
+            number(factor * other),
+            number(factor * (other - one)),
+            number(factor * band.half_width),
+            number(factor * band.numerical),
+            number(factor * band.simulated),
+            number(factor * band.measured),
+            number(factor * band.sensor),
             judgement.verdict + (f": {judgement.reason}" if judgement.reason else ""),
         ]
         for name, one, other, band, judgement in _judged(it)
@@ -150,7 +151,7 @@ def told_calibration(found: xr.Dataset, records: Sequence[xr.Dataset]) -> tuple[
     sources = ", ".join(dict.fromkeys(str(it.attrs["measured_from"]) for it in records))
     names = ("start", "estimate", "lower", "upper", "error", "freedom", "low", "high")
     rows = [
-        [str(path), *(_number(float(found[name].sel(parameter=path))) for name in names)]
+        [str(path), *(number(float(found[name].sel(parameter=path))) for name in names)]
         for path in found["parameter"].to_numpy()
     ]
     words = [f"{it}." for it in of["reasons"]]
@@ -189,7 +190,7 @@ def told_calibration(found: xr.Dataset, records: Sequence[xr.Dataset]) -> tuple[
 def _left(title: str, found: xr.Dataset, dim: str, names: tuple[str, str, str]) -> dict[str, Any]:
     measured, simulated, error = (found[name].to_numpy() for name in names)
     rows = [
-        [str(label), *map(_number, (one, other, band, (other - one) / band))]
+        [str(label), *map(number, (one, other, band, (other - one) / band))]
         for label, one, other, band in zip(
             found[dim].to_numpy(), measured, simulated, error, strict=True
         )
@@ -202,8 +203,14 @@ def _left(title: str, found: xr.Dataset, dim: str, names: tuple[str, str, str]) 
     }
 
 
-def _number(value: float) -> str:
+def number(value: float) -> str:
+    """Return a figure of a table, a dash for none."""
     return f"{value:.4g}" if math.isfinite(value) else "–"
+
+
+def texts(given: Iterable[Any]) -> Any:
+    """Return texts as an array, which a coordinate or a variable takes."""
+    return np.asarray([str(it) for it in given], dtype=np.str_)
 
 
 def as_text(sections: list[dict[str, Any]]) -> str:

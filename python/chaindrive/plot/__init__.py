@@ -9,8 +9,10 @@ figures of one's own.
 
 from __future__ import annotations
 
+from chaindrive.plot.assumed import sobol_indices, tornado
 from chaindrive.plot.curves import tension, work_precision
 from chaindrive.plot.drive import frame, layout, svg
+from chaindrive.plot.fitted import fit_correlations, fit_intervals, fit_residuals
 from chaindrive.plot.impulses import impulse_spectrum
 from chaindrive.plot.measured import (
     compared_orders,
@@ -52,6 +54,9 @@ __all__ = [
     "differences",
     "distribution",
     "elongation",
+    "fit_correlations",
+    "fit_intervals",
+    "fit_residuals",
     "frame",
     "impacts",
     "impulse_spectrum",
@@ -65,6 +70,7 @@ __all__ = [
     "rainflow",
     "response",
     "running_modes",
+    "sobol_indices",
     "span_envelope",
     "span_motion",
     "spectrum",
@@ -73,6 +79,7 @@ __all__ = [
     "tension",
     "tension_around_loop",
     "tooth_load",
+    "tornado",
     "transmission_error",
     "utilisation",
     "work_precision",

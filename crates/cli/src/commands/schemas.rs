@@ -35,6 +35,12 @@ enum Form {
     Resolve,
     Catalogue,
     Channels,
+    CheckData,
+    Compare,
+    Calibrate,
+    Predict,
+    Uncertainty,
+    Tornado,
     Error,
 }
 
@@ -51,9 +57,20 @@ impl Form {
             Self::Resolve => schema_of::<Resolved>(),
             Self::Catalogue => schema_of::<ChainList>(),
             Self::Channels => schema_of::<ChannelList>(),
+            Self::CheckData => of_package(include_str!("../../schemas/check-data.schema.json")),
+            Self::Compare => of_package(include_str!("../../schemas/compare.schema.json")),
+            Self::Calibrate => of_package(include_str!("../../schemas/calibrate.schema.json")),
+            Self::Predict => of_package(include_str!("../../schemas/predict.schema.json")),
+            Self::Uncertainty => of_package(include_str!("../../schemas/uncertainty.schema.json")),
+            Self::Tornado => of_package(include_str!("../../schemas/tornado.schema.json")),
             Self::Error => schema_of::<Complaint>(),
         }
     }
+}
+
+/// The form of what the Python package prints; its tests hold the answers against it.
+fn of_package(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_default()
 }
 
 pub(crate) fn schema(arguments: &Arguments) -> Result<(), Failure> {

@@ -1,0 +1,104 @@
+"""Distributions of values that nobody knows exactly: by name, as a range, or of SciPy."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from chaindrive.errors import MeasurementError, ParameterError
+from chaindrive.extras import extra
+from chaindrive.measurement.amount import amount
+
+__all__ = ["KINDS", "distribution_of"]
+
+_TEXT = re.compile(r"^\s*(?P<kind>[\w-]+)\s*\((?P<rest>[^()]*)\)\s*$")
+
+
+class _Kind(NamedTuple):
+    """A family of distributions."""
+
+    names: tuple[str, ...]
+    """What its arguments are."""
+    make: Callable[..., Any]
+    """From SciPy's distributions and the arguments [SI] to a frozen one; None where they do not
+    fit together."""
+
+
+def _uniform(stats: Any, low: float, high: float) -> Any:
+    return stats.uniform(low, high - low) if low < high else None
+
+
+def _normal(stats: Any, mean: float, deviation: float) -> Any:
+    return stats.norm(mean, deviation) if deviation > 0.0 else None
+
+
+def _lognormal(stats: Any, median: float, factor: float) -> Any:
+    if median <= 0.0 or factor <= 1.0:
+        return None
+    return stats.lognorm(math.log(factor), scale=median)
+
+
+def _triangular(stats: Any, low: float, mode: float, high: float) -> Any:
+    if not low <= mode <= high or low == high:
+        return None
+    return stats.triang((mode - low) / (high - low), low, high - low)
+
+
+KINDS: Mapping[str, _Kind] = {
+    "uniform": _Kind(("low", "high"), _uniform),
+    "normal": _Kind(("mean", "deviation"), _normal),
+    "lognormal": _Kind(("median", "factor above 1"), _lognormal),
+    "triangular": _Kind(("low", "mode", "high"), _triangular),
+}
+"""Families by name: 68 % of a log-normal lie between the median over the factor and times it."""
+
+
+def distribution_of(given: Any, path: str) -> Any:
+    """Return a distribution of SciPy, frozen.
+
+    Parameters
+    ----------
+    given
+        One already, with ``ppf``; or a pair of ends, between which all are alike; or a text such as
+        ``"normal(1.5 kN, 0.2 kN)"``.
+    path
+        Whose it is, for the error.
+
+    Raises
+    ------
+    ParameterError
+        It is none.
+    """
+    if callable(getattr(given, "ppf", None)):
+        return given
+    kind, values = "uniform", given
+    if isinstance(given, str):
+        found = _TEXT.match(given)
+        kind, values = ("", ()) if found is None else (found["kind"], found["rest"].split(","))
+    family = KINDS.get(kind)
+    if family is None or not isinstance(values, list | tuple) or len(values) != len(family.names):
+        raise _none(given, path)
+    try:
+        numbers = [amount(_plain(it), None, path) for it in values]
+    except MeasurementError as error:
+        raise _none(given, path) from error
+    made = family.make(extra("scipy.stats", "distributions"), *numbers)
+    if made is None:
+        raise _none(given, path)
+    return made
+
+
+def _plain(value: Any) -> Any:
+    """Return a number in a text as such."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return value.strip() if isinstance(value, str) else value
+
+
+def _none(given: Any, path: str) -> ParameterError:
+    listed = ", ".join(f"{kind}({', '.join(it.names)})" for kind, it in KINDS.items())
+    message = f"{path}: {given!r} is no distribution"
+    return ParameterError(message, path, f"a pair of ends, {listed}, or one of scipy.stats")
