@@ -4,8 +4,11 @@
 at every draw of the inputs. It takes some two minutes of processor time.
 """
 
+import contextlib
 import csv
+import io
 import math
+import re
 import tomllib
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -21,6 +24,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SCENE = ROOT / "tests/validation/M01/scene.toml"
 INPUTS = ROOT / "docs/tutorials/published.toml"
 LOSSES = ROOT / "docs/tutorials/published.csv"
+PAGE = ROOT / "docs/tutorials/published.md"
 PITCH = 12.7e-3
 SPANS = ("both", "one")
 """Hypotheses: the second span is as tense as the first, or slack while the first has all."""
@@ -169,6 +173,17 @@ def write(told: Callable[[str], None] = print) -> None:
             writer.writerow(row)
             file.flush()
             told(f"{row['case']}, {row['spans']}, draw {row['draw']}: {row['loss']} W")
+
+
+def page(simulate: bool = False) -> dict[str, Any]:
+    """Execute the tutorial, and return its names; what simulates only when asked for."""
+    text = PAGE.read_text(encoding="utf-8")
+    names: dict[str, Any] = {}
+    with contextlib.chdir(PAGE.parent), contextlib.redirect_stdout(io.StringIO()):
+        for cell in re.findall(r"```\{code-cell\} python\n(.*?)```", text, flags=re.DOTALL):
+            if simulate or "cd.simulate(" not in cell:
+                exec(compile(cell, PAGE.name, "exec"), names)
+    return names
 
 
 if __name__ == "__main__":

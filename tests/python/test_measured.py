@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from published import PITCH, losses, tensioned, transmitting, worn
+from published import PITCH, losses, page, tensioned, transmitting, worn
 from verdicts import MeasuredCase
 
 import chaindrive as cd
@@ -27,6 +27,14 @@ def corners(drive: cd.Drive, vary: dict[str, list[float]]) -> list[float]:
     keys = [name for name in stacked["energy_losses"].dims if name not in ("time", "place")]
     variants = stacked.stack(variant=keys)
     return [losses(variants.isel(variant=i)) for i in range(variants.sizes["variant"])]
+
+
+def foretold(case: MeasuredCase, what: str, name: str, spans: str) -> None:
+    """Judge what the tutorial on published measurements foretells from one of them."""
+    found, width = page()["foretold"][name, spans]
+    told = {"both": "both spans tense", "one": "one span slack"}[spans]
+    quantity = f"{what}, foretold by M01's chain A, {told}"
+    case.number(quantity, found, interval=(found - width, found + width))
 
 
 def efficiency(
@@ -171,6 +179,8 @@ def test_m17_small_sprockets_at_the_same_ratio() -> None:
             found,
             interval=(min(extra), max(extra)),
         )
+        foretold(case, "the same", "M17", "both")
+        foretold(case, "the same", "M17", "one")
 
 
 @pytest.mark.slow
@@ -185,6 +195,8 @@ def test_m18_worn_chains() -> None:
         new, half, one = map(losses, runs)
         powers = corners(worn(rig, 0.0), OPEN)
         case.number("loss of a new chain", new, interval=(min(powers), max(powers)))
+        foretold(case, "the same", "M18 new", "both")
+        foretold(case, "the same rise", "M18 rise", "both")
         # Loss is nearly proportional to friction.
         needed = 0.125 * (new + 2.02) / one
         case.number(
