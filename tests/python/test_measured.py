@@ -5,12 +5,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-import xarray as xr
+from published import PITCH, losses, page, tensioned, transmitting, worn
 from verdicts import MeasuredCase
 
 import chaindrive as cd
 
-PITCH = 12.7e-3
 FRICTION = "contact.joints.friction.coefficient"
 #: Ranges of what no source tells of a chain: friction of pins in bushes, of handbooks, and the
 #: pressure around a pin, from that of a line to that of a pin which has worn in.
@@ -22,53 +21,20 @@ FAST = {"error": False}
 """Numerical errors are estimated elsewhere."""
 
 
-def losses(run: xr.Dataset) -> float:
-    """Mean power lost in joints, on teeth and along spans [W], not in the damper of a rig."""
-    lost = run["energy_losses"].sel(place=["joints", "rollers", "teeth", "spans"]).sum("place")
-    duration = float(run["time"][-1] - run["time"][0])
-    return float(lost[-1] - lost[0]) / duration
-
-
-def tensioned(
-    rig: cd.Drive, teeth: tuple[int, int], links: int, tension: float, **changes: Any
-) -> cd.Drive:
-    """Give the full-tension rig other sprockets and another tension [N]."""
-    chainring, cog = teeth
-    centres = cd.kinematics.centre_distance(chainring, cog, PITCH, links)
-    return rig.replace(
-        {
-            "sprockets.chainring.teeth": chainring,
-            "sprockets.cog.teeth": cog,
-            "sprockets.cog.centre": [-centres, 0.0],
-            "chain.links": links,
-            "route.pretension": tension,
-        }
-        | changes
-    )
-
-
-def transmitting(
-    rig: cd.Drive, teeth: tuple[int, int], links: int, power: float, rpm: float
-) -> cd.Drive:
-    """Let the rig transmit a power [W], with 15 N in both spans beside half the useful tension."""
-    chainring, cog = teeth
-    # P = T v,   v = z p n
-    useful = power / (chainring * PITCH * rpm / 60)
-    # M = T z p/2π in the mean over a tooth
-    torque = useful * cog * PITCH / math.tau
-    changes = {
-        "sprockets.chainring.motion.speed": f"-{rpm} rpm",
-        "sprockets.cog.load": [{"kind": "constant", "torque": torque}],
-    }
-    return tensioned(rig, teeth, links, useful / 2 + 15, **changes)
-
-
 def corners(drive: cd.Drive, vary: dict[str, list[float]]) -> list[float]:
     """Power lost at every combination of values [W]."""
     stacked = cd.sweep(drive, vary, record=["energy_losses"])
     keys = [name for name in stacked["energy_losses"].dims if name not in ("time", "place")]
     variants = stacked.stack(variant=keys)
     return [losses(variants.isel(variant=i)) for i in range(variants.sizes["variant"])]
+
+
+def foretold(case: MeasuredCase, what: str, name: str, spans: str) -> None:
+    """Judge what the tutorial on published measurements foretells from one of them."""
+    found, width = page()["foretold"][name, spans]
+    told = {"both": "both spans tense", "one": "one span slack"}[spans]
+    quantity = f"{what}, foretold by M01's chain A, {told}"
+    case.number(quantity, found, interval=(found - width, found + width))
 
 
 def efficiency(
@@ -213,6 +179,8 @@ def test_m17_small_sprockets_at_the_same_ratio() -> None:
             found,
             interval=(min(extra), max(extra)),
         )
+        foretold(case, "loss of 39 to 11 less that of 53 to 15 teeth", "M17", "both")
+        foretold(case, "loss of 39 to 11 less that of 53 to 15 teeth", "M17", "one")
 
 
 @pytest.mark.slow
@@ -220,33 +188,15 @@ def test_m18_worn_chains() -> None:
     with MeasuredCase("M18") as case:
         rig = case.drive()
 
-        def worn(elongation: float) -> cd.Drive:
-            centres = cd.kinematics.centre_distance(53, 11, PITCH * (1 + elongation), 108)
-            push = {"kind": "spring", "preload": 469.2, "stiffness": 1e4, "damping": 500.0}
-            carrier = {"kind": "slider", "direction": [-1, 0], "mass": 5.0}
-            return rig.replace(
-                {
-                    "chain.elongation": elongation,
-                    "sprockets.cog.centre": [-centres, 0.0],
-                    "sprockets.cog.mass": 0.2,
-                    "sprockets.cog.support": {"kind": "tensioner", "name": "carriage"},
-                    "tensioners": [{"name": "carriage", "carrier": carrier, "push": push}],
-                    "route.adjust": {
-                        "kind": "sprocket",
-                        "name": "cog",
-                        "direction": [-1, 0],
-                        "within": 0.02,
-                    },
-                }
-            )
-
-        runs = [cd.simulate(worn(it), **FAST) for it in (0.0, 0.005, 0.01)]
+        runs = [cd.simulate(worn(rig, it), **FAST) for it in (0.0, 0.005, 0.01)]
         for run in runs:
             tension = run["span_tension"].mean("time").to_numpy()
             assert np.all(abs(tension - 234.6) < 0.03 * 234.6), tension
         new, half, one = map(losses, runs)
-        powers = corners(worn(0.0), OPEN)
+        powers = corners(worn(rig, 0.0), OPEN)
         case.number("loss of a new chain", new, interval=(min(powers), max(powers)))
+        foretold(case, "loss of a new chain", "M18 new", "both")
+        foretold(case, "rise of the loss for 1 % of elongation", "M18 rise", "both")
         # Loss is nearly proportional to friction.
         needed = 0.125 * (new + 2.02) / one
         case.number(
