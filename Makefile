@@ -59,8 +59,6 @@ check: check-rust check-python ## Check format, lints, documentation and types
 check-rust: $(VENV)/ready
 	cargo fmt --all --check
 	cargo clippy $(QUICK) --workspace --all-targets -- -D warnings
-	@# Without stores, as units and browsers have them.
-	cargo clippy $(QUICK) -p chaindrive -p chaindrive-replay --no-default-features -- -D warnings
 	RUSTDOCFLAGS='-D warnings' cargo doc $(QUICK) --workspace --no-deps --quiet
 
 check-python: setup $(VENV)/test-ready
