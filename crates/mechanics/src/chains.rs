@@ -426,7 +426,7 @@ impl Chain {
 impl Chain {
     hand_on_with_record! {
         fn tensions(&self, at: Moment<'_>, record, out: &mut Vec<f64>);
-        fn tensions_of_step(&self, at: Moment<'_>, record, out: &mut Vec<f64>);
+        fn tensions_of_step(&self, at: Moment<'_>, record, out: &mut Vec<f64>) -> [f64; 2];
         fn pressed(&self, at: Moment<'_>, record) -> f64;
         fn observe(&self, at: Moment<'_>, record, out: &mut Observation);
         fn observe_forces(&self, at: Moment<'_>, record, out: &mut Observation);

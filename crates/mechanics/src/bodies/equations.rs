@@ -36,15 +36,14 @@ impl Bodies {
             self.balance_shafts(a, accounts);
         }
         for (index, (wheel, wrench)) in self.wheels.iter().zip(wheel_wrenches).enumerate() {
-            let given = self.centre_force(index, at);
-            let force = with_force(wrench.force, given);
             let centre = || wheel.centre_kinematics(at.t, at.q, at.v, &self.slides);
             match &wheel.support {
                 WheelSupport::Fixed => {}
                 WheelSupport::Prescribed { .. } => {
                     let (_, velocity, acceleration) = centre();
+                    let given = self.centre_force(index, at);
                     // P = (m a − F − m g)·v
-                    let force = Vector::from(force);
+                    let force = Vector::from(with_force(wrench.force, given));
                     let needed = (acceleration - self.gravity) * wheel.mass - force;
                     rates[Flow::Motions as usize] += needed.dot(&velocity);
                     if let Some(given) = given {
@@ -59,6 +58,8 @@ impl Bodies {
                     damping,
                 } => {
                     let (centre, velocity, _) = centre();
+                    let given = self.centre_force(index, at);
+                    let force = with_force(wrench.force, given);
                     for axis in 0..2 {
                         let away = centre[axis] - wheel.centre[axis];
                         let speed = velocity[axis];

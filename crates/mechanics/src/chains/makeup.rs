@@ -11,6 +11,7 @@ use crate::bodies::{GroupBodies, Surroundings};
 use crate::contact::{Frame, PlateContact, Touch};
 use crate::energy::Energy;
 use crate::seam::{Load, Loads, Moving, Observation, Pose, Rates, Sum, Unknown};
+use crate::watch::range_of;
 
 /// A chain in motion. States come as the chain's own part.
 pub(crate) trait Makeup: Statics {
@@ -61,9 +62,11 @@ pub(crate) trait Makeup: Statics {
     /// Appends the tension of every link \[N\].
     fn tensions(&self, at: Moment<'_>, work: &Self::Work, out: &mut Vec<f64>);
 
-    /// The same into an empty list, asked for at every step: rounded as is quickest.
-    fn tensions_of_step(&self, at: Moment<'_>, work: &Self::Work, out: &mut Vec<f64>) {
+    /// The same in place of what is in the list, with the least and the greatest of them; asked for at every step, and rounded as is quickest.
+    fn tensions_of_step(&self, at: Moment<'_>, work: &Self::Work, out: &mut Vec<f64>) -> [f64; 2] {
+        out.clear();
         self.tensions(at, work, out);
+        range_of(out)
     }
 
     /// Appends what belongs to the chain, forces apart.

@@ -243,13 +243,14 @@ impl Makeup for Particles {
         out.extend(links);
     }
 
-    fn tensions_of_step(&self, at: Moment<'_>, work: &Work, out: &mut Vec<f64>) {
+    fn tensions_of_step(&self, at: Moment<'_>, work: &Work, out: &mut Vec<f64>) -> [f64; 2] {
         let n = self.series.stride;
         let columns = [&at.q[..n], &at.q[n..2 * n], &at.v[..n], &at.v[n..2 * n]];
         out.resize(self.links.rest.len(), 0.0);
         let pulls = springs::pulls(&self.links, columns, &work.turning, out);
-        self.series.registers.dispatch(pulls);
+        let range = self.series.registers.dispatch(pulls);
         out.truncate(self.links.count);
+        range
     }
 
     fn observe(&self, at: Moment<'_>, _work: &Work, out: &mut Observation) {

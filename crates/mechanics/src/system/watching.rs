@@ -7,7 +7,7 @@ use super::{Record, System};
 use crate::accounts::{AccountSizes, Accounts};
 use crate::energy::Flow;
 use crate::order::Forcing;
-use crate::watch::{DriveExtremes, Watch, WatchPlan, WatchWork, mean_between, range_of};
+use crate::watch::{DriveExtremes, Watch, WatchPlan, WatchWork, mean_between};
 
 impl System {
     /// Has every step watched as a plan says, and keeps the accounts of the bodies among the
@@ -147,11 +147,9 @@ impl Watch {
         }
         let read = &mut self.readings[readings..];
         for (member, record) in system.chains.iter().zip(&record.chains) {
-            tensions.clear();
-            member
+            let [least, greatest] = member
                 .chain
                 .tensions_of_step(member.own(at), record, tensions);
-            let [least, greatest] = range_of(tensions);
             let extremes = &mut self.current.chains[chains];
             extremes.see(least, t);
             extremes.see(greatest, t);

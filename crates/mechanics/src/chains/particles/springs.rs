@@ -7,6 +7,7 @@ use pulp::Simd;
 use crate::Chain;
 use crate::contact::Rollers;
 use crate::lanes::{LANES, Lane, Lanes, Wide, padded};
+use crate::watch::range_of;
 
 /// The links in flat arrays, padded to whole lanes with links of no stiffness.
 #[derive(Clone, Debug)]
@@ -191,7 +192,7 @@ impl Links {
         loss.sum()
     }
 
-    /// Tension of every link \[N\], whole lanes; x, y and their rates are rows of the rollers, which are where the last evaluation
+    /// Tension of every link \[N\], whole lanes, and the least and the greatest of them; x, y and their rates are rows of the rollers, which are where the last evaluation
     /// found them.
     #[inline(always)]
     fn pull<S: Simd>(
@@ -200,14 +201,16 @@ impl Links {
         columns: [&[f64]; 4],
         turning: &Turning,
         tensions: &mut [f64],
-    ) {
+    ) -> [f64; 2] {
         let n = self.rest.len();
         let own = [&self.rest, &self.stiffness, &self.damping];
         let [rest, stiffness, damping] = own.map(|values| w.lanes(&values[..n]));
         let [x, y, vx, vy] = columns.map(|values| w.lanes(&values[..n]));
         let [x_next, y_next, vx_next, vy_next] = columns.map(|values| w.lanes(&values[1..=n]));
         let inverses = w.lanes(&turning.inverse[..n]);
-        let mut tensions = Wide::<S>::lanes_mut(&mut tensions[..n]);
+        let mut pulls = Wide::<S>::lanes_mut(&mut tensions[..n]);
+        let whole = self.count / Wide::<S>::COUNT;
+        let (mut least, mut greatest) = (w.splat(f64::INFINITY), w.splat(f64::NEG_INFINITY));
         for i in 0..n / Wide::<S>::COUNT {
             let [dx, dy] = [x_next.get(i) - x.get(i), y_next.get(i) - y.get(i)];
             let [ux, uy] = [vx_next.get(i) - vx.get(i), vy_next.get(i) - vy.get(i)];
@@ -216,8 +219,15 @@ impl Links {
             // T = k (ℓ − p) + d ℓ̇
             let stretch = square * inverse - rest.get(i);
             let drag = damping.get(i) * (dx * ux).plus(dy, uy) * inverse;
-            tensions.set(i, drag.plus(stiffness.get(i), stretch));
+            let tension = drag.plus(stiffness.get(i), stretch);
+            pulls.set(i, tension);
+            // Behind the last link stand others of no stiffness.
+            if i < whole {
+                (least, greatest) = (least.min(tension), greatest.max(tension));
+            }
         }
+        let [low, high] = range_of(&tensions[whole * Wide::<S>::COUNT..self.count]);
+        [low.min(least.smallest()), high.max(greatest.largest())]
     }
 
     /// Tension of one link between two pins with their velocities \[N\].
@@ -246,7 +256,7 @@ kernel!(
         columns: [&'a [f64]; 4],
         turning: &'a Turning,
         tensions: &'a mut [f64],
-    ) {
-        links.pull(w, columns, turning, tensions);
+    ) -> [f64; 2] {
+        links.pull(w, columns, turning, tensions)
     }
 );
