@@ -125,7 +125,8 @@ wheels: export CFLAGS := -ffile-prefix-map=$(CARGO_FOLDER)=cargo
 
 wheels: $(VENV)/wheels-ready ## Build a wheel for Linux and the source distribution in dist, and try them
 	rm -rf dist
-	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/cargo-zigbuild zigbuild --release --quiet -p chaindrive-python -p chaindrive-fmu --target $(WHEEL_TARGET).2.17
+	@# By itself: in one call with the bindings it would have their stores.
+	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/cargo-zigbuild zigbuild --release --quiet -p chaindrive-fmu --target $(WHEEL_TARGET).2.17
 	mkdir -p python/chaindrive/library
 	cp target/$(WHEEL_TARGET)/release/libchaindrive_fmu.so python/chaindrive/library/
 	@# Apart: a wheel that is made of the source distribution has no library of units.

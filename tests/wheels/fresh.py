@@ -8,6 +8,7 @@ calls the command. Needs nothing but Python; what the wheel depends on comes fro
 
 import argparse
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -47,6 +48,14 @@ def traces(wheel: Path) -> list[str]:
     return [name for name, held in files.items() if any(it in held for it in folders)]
 
 
+def stores(wheel: Path) -> list[str]:
+    """Return libraries of units in a wheel that were built with stores, which no unit writes."""
+    with zipfile.ZipFile(wheel) as archive:
+        libraries = [name for name in archive.namelist() if "chaindrive_fmu" in name]
+        # The list of licences, which may be in it, has no hyphen there.
+        return [name for name in libraries if re.search(rb"zarrs-\d", archive.read(name))]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description="Try a wheel in a fresh environment.")
     parser.add_argument("folder", type=Path, help="folder with the wheel")
@@ -54,6 +63,8 @@ def main() -> None:
     # Elsewhere nobody has tried it.
     if sys.platform == "linux" and (found := traces(wheel)):
         sys.exit(f"{wheel.name}: paths of this machine are in {', '.join(found)}")
+    if found := stores(wheel):
+        sys.exit(f"{', '.join(found)} has stores: build it by itself, `-p chaindrive-fmu` alone")
     with zipfile.ZipFile(wheel) as archive:
         if not any(name.endswith("third-party.txt") for name in archive.namelist()):
             sys.exit(f"{wheel.name} has no licences of the libraries in it")

@@ -20,8 +20,8 @@ use serde_json::{Map, Value};
 
 use crate::Simulation;
 use crate::figure::figure;
+use crate::story::Story;
 use crate::summary::Summary;
-use crate::zarr::Story;
 
 pub use layout::{against_practice, layout_checks, remarks};
 pub(crate) use strength::{ALIGNED, ALIGNED_FAST};

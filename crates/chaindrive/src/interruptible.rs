@@ -11,7 +11,7 @@ use crate::{SimulationError, caught};
 pub(crate) const LOOK: Duration = Duration::from_millis(50);
 
 /// Does something on a thread of its own, and gives it up when somebody wants to stop: reading from a pipe, or a chain
-/// that settles. The thread is left to itself then.
+/// that settles. The thread is left to itself then. A browser has none: there it is done in place, and nobody interrupts it.
 ///
 /// # Errors
 /// [`SimulationError::Interrupted`], or [`SimulationError::Thread`] where the system has none.
@@ -19,6 +19,9 @@ pub fn patiently<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
     stop: &dyn Fn() -> bool,
 ) -> Result<T, SimulationError> {
+    if cfg!(target_family = "wasm") {
+        return Ok(work());
+    }
     let (sender, receiver) = channel();
     let begun = std::thread::Builder::new().spawn(move || {
         // Nobody listens any more after an interrupt.
@@ -49,9 +52,8 @@ pub fn assemble(drive: &Drive, stop: &dyn Fn() -> bool) -> Result<Assembled, Sim
 
 #[cfg(test)]
 mod tests {
-    use std::time::Instant;
-
     use super::*;
+    use crate::clock::Instant;
 
     #[test]
     fn what_takes_for_ever_is_given_up() {

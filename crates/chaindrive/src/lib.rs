@@ -17,10 +17,26 @@
 //! assert_eq!(recording.len(), 6);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Features
+//!
+//! `stores`, on unless switched off: results in Zarr stores, on a disk or in an object store, files, sweeps, many simulations at once. Without it
+//! the crate describes, simulates, judges and draws with half as many libraries, and compiles for `wasm32-unknown-unknown`.
+
+#![cfg_attr(
+    not(feature = "stores"),
+    allow(
+        dead_code,
+        unreachable_pub,
+        unused_imports,
+        reason = "stores and sweeps ask for it"
+    )
+)]
 
 pub mod catalogue;
 pub mod chain_verdict;
 pub mod channel;
+mod clock;
 pub mod describe;
 pub mod design;
 pub mod draw;
@@ -32,7 +48,6 @@ mod identity;
 mod interruptible;
 pub mod laws;
 mod net;
-mod new_file;
 pub mod page;
 pub mod plausibility;
 pub mod precision;
@@ -47,10 +62,18 @@ mod sheet;
 mod simulate;
 mod statistic;
 mod stepping;
+mod story;
 mod summary;
-pub mod sweep;
 mod terminal_text;
 pub mod verdict;
+
+// Stores: files of results, sweeps, and what else takes threads. Without the feature `stores` these are left out, with the stores of
+// `record` and `simulate::step_many`: what remains compiles for browsers too.
+#[cfg(feature = "stores")]
+mod new_file;
+#[cfg(feature = "stores")]
+pub mod sweep;
+#[cfg(feature = "stores")]
 mod zarr;
 
 pub use catalogue::CatalogueChain;
@@ -70,7 +93,6 @@ pub use execute::{Report, RunError, Stop, execute};
 pub use identity::{Build, Origin};
 pub use interruptible::{assemble, patiently};
 pub use net::{ProgramError, catch_everywhere, caught};
-pub use new_file::{FilePart, NewFile};
 pub use precision::{Choice, Estimate, Judgement};
 pub use rainflow::{Cycle, rainflow};
 pub use rating::Rating;
@@ -80,8 +102,13 @@ pub use run_in::{MOST_CIRCUITS, Onlooker, RunInReport, run_in};
 pub use scene::{RunIn, Scene};
 pub use seal::{SealError, SealedValue, opened, sealed};
 pub use sheet::aligned;
-pub use simulate::{Control, Period, Simulation, Snapshot, SnapshotError, View, step_many};
+pub use simulate::{Control, Period, Simulation, Snapshot, SnapshotError, View};
 pub use stepping::Stepping;
 pub use summary::{ImpactStatistics, Summary};
 pub use terminal_text::{cell, one_line, plain, plain_json};
 pub use verdict::{Reason, Rule, Trust, Verdict};
+
+#[cfg(feature = "stores")]
+pub use new_file::{FilePart, NewFile};
+#[cfg(feature = "stores")]
+pub use simulate::step_many;

@@ -2,10 +2,15 @@
 
 mod attributes;
 mod checkpoint;
+mod free_memory;
 mod memory;
 mod recorded;
 mod sink;
+
+// Stores.
+#[cfg(feature = "stores")]
 mod zarr;
+#[cfg(feature = "stores")]
 mod zarr_sink;
 
 use chaindrive_mechanics::{Energy, Observation, System};
@@ -14,21 +19,25 @@ use crate::channel::labels;
 use crate::{Channel, Run, SimulationError};
 
 pub use crate::event::{EventColumn, EventTable};
+pub use crate::story::Ending;
 pub use crate::summary::{
     Balance, Bodies, ConfidenceInterval, ContactStatistics, ForceRecord, ForceStatistics,
     ImpactStatistics, Ledger, SpanStatistics, SprocketStatistics, Steadiness, Summary,
     TensionerStatistics,
 };
-pub use crate::zarr::{
-    Claim, Ending, Existing, Object, Objects, WriteError, is_being_written, take_over,
-};
 pub use attributes::{Provenance, attributes};
 pub use checkpoint::Checkpoint;
 pub(crate) use checkpoint::RestoreError;
+use free_memory::free_memory;
 pub use memory::Memory;
 pub use recorded::{LoggedContact, RecordedChannel, RecordedRun};
 pub use sink::{End, Sink};
+
+#[cfg(feature = "stores")]
+pub use crate::zarr::{Claim, Existing, Object, Objects, WriteError, is_being_written, take_over};
+#[cfg(feature = "stores")]
 pub use zarr::{ReadError, ResumeError, StoppedRun, ZarrWriter, inspect};
+#[cfg(feature = "stores")]
 pub use zarr_sink::ZarrSink;
 
 /// One channel of a recording.
@@ -138,18 +147,5 @@ impl Size {
             values,
             bytes,
         }
-    }
-}
-
-/// Memory that this program can still have \[bytes\], limits of its control group included; without bounds where the
-/// system does not say.
-fn free_memory() -> f64 {
-    let mut system = sysinfo::System::new();
-    system.refresh_memory();
-    let group = system.cgroup_limits().map(|limits| limits.free_memory);
-    let free = system.available_memory();
-    match group.map_or(free, |group| group.min(free)) {
-        0 => f64::INFINITY,
-        bytes => bytes as f64,
     }
 }

@@ -5,6 +5,7 @@ mod live;
 mod periods;
 mod sample;
 mod snapshot;
+#[cfg(feature = "stores")]
 mod step_many;
 mod view;
 
@@ -98,6 +99,7 @@ use periods::PeriodEnd;
 pub(crate) use sample::Sample;
 use snapshot::PreviousState;
 pub use snapshot::{Snapshot, SnapshotError};
+#[cfg(feature = "stores")]
 pub use step_many::step_many;
 pub use view::View;
 

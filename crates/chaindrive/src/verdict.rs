@@ -19,8 +19,8 @@ use serde_json::{Map, Value};
 use crate::chain_verdict::{ChainVerdict, WrittenChainVerdict};
 use crate::precision::{Choice, Estimate, Judgement, LEAST_LOSSES, Promise};
 use crate::sheet::{NAMES, aligned};
+use crate::story::Story;
 use crate::summary::{Ledger, Steadiness, Summary};
-use crate::zarr::Story;
 use crate::{Channel, RunInReport, Simulation};
 
 pub use reason::{Reason, Rule};

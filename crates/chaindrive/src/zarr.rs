@@ -1,4 +1,4 @@
-//! Zarr stores, on a disk or in an object store: their files, who may write them, what they hold, what they say of themselves.
+//! Zarr stores, on a disk or in an object store: their files, who may write them, what they hold.
 
 mod bucket;
 mod claim;
@@ -8,7 +8,6 @@ mod folder;
 mod inspect;
 mod names;
 mod store;
-mod story;
 mod target;
 mod track;
 mod write_error;
@@ -25,8 +24,6 @@ pub(crate) use folder::Folder;
 pub(crate) use inspect::inspect;
 pub(crate) use names::{CHECKPOINT, CHOICES, GROUP, LAYOUT, RECIPE};
 pub(crate) use store::Store;
-pub use story::Ending;
-pub(crate) use story::Story;
 pub(crate) use target::{bucket, group};
 pub(crate) use track::{
     StoredArray, Track, ZSTD_LEVEL, metadata, samples_per_chunk, store_chains, store_labels,

@@ -1,12 +1,13 @@
 //! Cost of a run, found by taking its first steps.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use chaindrive_integrate::SecondOrderSystem;
 use chaindrive_mechanics::Assembled;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::clock::Instant;
 use crate::run_in::bounds;
 use crate::{Run, Simulation, SimulationError};
 

@@ -15,7 +15,7 @@ use super::variant::{CAUTION, Candidates, Entry, Variant};
 use super::window::{Window, automatic, pinned, sharper};
 use crate::figure::{Measure, duration, percent};
 use crate::scene::Quantity;
-use crate::zarr::Story;
+use crate::story::Story;
 use crate::{Run, SimulationError, Stepping};
 
 /// An accuracy that is asked for.

@@ -12,7 +12,7 @@ use super::short_runs::ShortRuns;
 use super::trace::Strands;
 use crate::figure::{duration, percent};
 use crate::sheet::{NAMES, aligned, lines};
-use crate::zarr::Story;
+use crate::story::Story;
 use crate::{Channel, Run, Simulation, SimulationError};
 
 /// Statement about the error of a run, made at its end.

@@ -1,7 +1,5 @@
 //! Work against precision: many methods and steps, measured on one drive.
 
-use std::time::Instant;
-
 use chaindrive_integrate::Statistics;
 use chaindrive_mechanics::Assembled;
 
@@ -12,6 +10,7 @@ use super::short_runs::APART;
 use super::trace::{Gap, Strands, Trace};
 use super::variant::{Variant, references, usual};
 use super::window::{Window, automatic, pinned};
+use crate::clock::{Instant, on_processor};
 use crate::{Run, RunInReport, SimulationError, run_in};
 
 /// Settings of a work-precision study.
@@ -238,18 +237,6 @@ fn timed(
             0.5 * (times[half - 1] + times[half])
         }
     }))
-}
-
-/// Time of this thread on its processor \[s\]; NaN where the system's is not asked for.
-fn on_processor() -> f64 {
-    #[cfg(any(target_os = "linux", target_vendor = "apple"))]
-    {
-        use rustix::time::{ClockId, clock_gettime};
-        let time = clock_gettime(ClockId::ThreadCPUTime);
-        time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
-    }
-    #[cfg(not(any(target_os = "linux", target_vendor = "apple")))]
-    f64::NAN
 }
 
 impl Row {

@@ -5,17 +5,18 @@
 
 use chaindrive_integrate::Method;
 use chaindrive_mechanics::MissingRating;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use serde_json::{Map, Value};
 
 use crate::RunInReport;
 use crate::Summary;
+use crate::clock::Instant;
 use crate::page::{Page, numerics};
 use crate::precision::{Choice, Judgement};
 use crate::rating::Rating;
 use crate::statistic::Statistic;
-use crate::zarr::{Ending, Story};
+use crate::story::{Ending, Story};
 use crate::{Reason, Run, Scene, Simulation, Stepping, Verdict};
 
 /// Origin of a run: scene, versions, run-in and choice of method.

@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use super::{Checkpoint, Provenance};
 use crate::precision::Judgement;
-use crate::zarr::Ending;
+use crate::story::Ending;
 use crate::{Channel, Run, Simulation, Summary};
 
 /// Destination of samples: memory, a store, a table.

@@ -33,7 +33,7 @@ mod stopped_run;
 
 use std::fmt;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use serde_json::{Map, Value};
 
@@ -41,8 +41,10 @@ pub use reader::{ReadError, inspect};
 pub use stopped_run::{ResumeError, StoppedRun};
 
 use super::attributes::{Provenance, attributes};
+use crate::clock::Instant;
 use crate::precision::Judgement;
-use crate::zarr::{CHECKPOINT, Ending, Existing, Store, WriteError};
+use crate::story::Ending;
+use crate::zarr::{CHECKPOINT, Existing, Store, WriteError};
 use crate::{Channel, Checkpoint, Simulation};
 use content::Content;
 

@@ -1,11 +1,12 @@
 //! Stepping from outside: read at any time, set what acts on the drive, go back to where one was.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use chaindrive_mechanics::{Assembled, Course, Input, Observation};
 
 use super::snapshot::PreviousState;
 use super::{Moving, STEPS_PER_LOOK, Simulation};
+use crate::clock::Instant;
 use crate::interruptible::LOOK;
 use crate::{Channel, SimulationError, Stepping};
 

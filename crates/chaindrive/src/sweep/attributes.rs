@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use super::{Sweep, VariantCounts};
 use crate::record::Ending;
-use crate::zarr::Story;
+use crate::story::Story;
 
 impl Sweep {
     /// Attributes of the result: scene, varied paths, methods, progress.

@@ -1,10 +1,11 @@
 //! A timed sample of variants: how many of them make a task.
 
 use std::sync::atomic::AtomicBool;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::threads::{cores, on_threads};
 use super::{Account, Go, Outcome, Sweep, SweepError, Worker};
+use crate::clock::Instant;
 
 /// Wall time of a task: 0.5 to 5 s are short beside a sweep, and long beside the writing of some forty files.
 const TASK: Duration = Duration::from_secs(1);

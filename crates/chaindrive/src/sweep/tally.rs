@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::columns::{COLUMNS, short};
 use super::{Account, Outcome, Sweep, VariantCounts};
-use crate::zarr::Ending;
+use crate::story::Ending;
 
 /// Failures that are told.
 const FAILURES: usize = 20;

@@ -18,7 +18,8 @@ use super::folder::Folder;
 use super::inspect::inspect;
 use super::names::GROUP;
 use super::write_error::WriteError;
-use super::{Ending, Existing, target};
+use super::{Existing, target};
+use crate::story::Ending;
 
 /// Space for a last group document on a full disk, beyond twice the length of the first.
 const RESERVE: usize = 1 << 16;

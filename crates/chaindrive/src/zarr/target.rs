@@ -12,8 +12,8 @@ use super::Existing;
 use super::bucket::{Bucket, Objects};
 use super::inspect::read_group;
 use super::names::{CHECKPOINT, GROUP, IDENTITY, OF_SWEEPS, RECIPE, STAGED};
-use super::story::FORMAT;
 use super::write_error::WriteError;
+use crate::story::FORMAT;
 
 /// Refuses a place that holds what must stay. The caller has claimed the place: a result that says `running` there
 /// was left by a process that died.

@@ -6,6 +6,7 @@ mod formulas;
 mod layers;
 mod libraries;
 mod recipes;
+mod stores;
 
 use std::fs;
 use std::path::{Path, PathBuf};

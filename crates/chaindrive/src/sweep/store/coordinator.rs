@@ -1,7 +1,7 @@
 //! The coordinator of a sweep in a store: it begins the sweep, hands out its tasks, and notes its progress in the store.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use serde_json::{Map, Value};
 use zarrs::array::builder::ArrayBuilderFillValue;
@@ -9,6 +9,8 @@ use zarrs::array::{DataType, data_type};
 
 use super::{Arrays, StoreLocation, StoreSink, every_chunk};
 use crate::channel::unit_attribute;
+use crate::clock::Instant;
+use crate::story::{Ending, Story};
 use crate::sweep::coordinator::{Coordinator, Watch, carry_out};
 use crate::sweep::layout::Layout;
 use crate::sweep::sink::Sink;
@@ -17,8 +19,8 @@ use crate::sweep::{
     TEXTS, Tally, VariantCounts, Worker,
 };
 use crate::zarr::{
-    Ending, Existing, Fault, LAYOUT, RECIPE, Store, StoredArray, Story, WriteError, about,
-    metadata, store_metadata,
+    Existing, Fault, LAYOUT, RECIPE, Store, StoredArray, WriteError, about, metadata,
+    store_metadata,
 };
 
 /// Wall time between two accounts of a sweep in its store.

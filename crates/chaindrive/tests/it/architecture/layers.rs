@@ -58,6 +58,7 @@ const CRATES: [Storeys; 6] = [
         folder: "chaindrive",
         layers: &[
             &[
+                "clock",
                 "figure",
                 "laws",
                 "terminal_text",
@@ -66,7 +67,7 @@ const CRATES: [Storeys; 6] = [
                 "stepping",
             ],
             &["identity"],
-            &["net"],
+            &["net", "story"],
             &["catalogue", "design", "draw", "rating", "seal"],
             &["error", "scene"],
             &["channel", "interruptible"],

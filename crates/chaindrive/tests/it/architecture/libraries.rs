@@ -14,7 +14,7 @@ const CARRIERS: &str = "aligned-vec allocator-api2 arrayvec bitflags bytemuck cf
 const ABOVE: [&str; 2] = ["hdrhistogram", "postcard"];
 
 /// What `cargo tree` tells of the workspace, a line a package.
-fn tree(arguments: &[&str]) -> String {
+pub(super) fn tree(arguments: &[&str]) -> String {
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .args(["tree", "--offline", "--locked", "--prefix", "none"])
         .arg("--manifest-path")
