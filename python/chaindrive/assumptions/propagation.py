@@ -108,7 +108,7 @@ def uncertainty(
 
     References
     ----------
-    A. Saltelli et al., *Comput. Phys. Commun.* **181**(2), 2010, 259–270,
+    A. Saltelli et al., *Comput. Phys. Commun.* **181**, 2010, 259–270,
     <https://doi.org/10.1016/j.cpc.2009.09.018>, by SALib.
     """
     _needed(drive)
