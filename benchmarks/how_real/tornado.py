@@ -21,7 +21,7 @@ def tight_span(name: str) -> object:
     return of
 
 
-#: What is read off a drive, as it is called in the tables.
+#: Outputs, and their names in the tables.
 OUTPUTS = {
     "tight span, mean": tight_span("span_tension_mean"),
     "tight span, scatter": tight_span("span_tension_std"),

@@ -21,7 +21,7 @@ _Floats = NDArray[np.float64]
 Given = str | Iterable[str] | Mapping[str, "str | Callable[[xr.Dataset], Any]"]
 
 OUTPUTS = ("span_tension_mean", "span_tension_std", "contact_force_p99", "loss_share")
-"""What is read off a drive where nobody says otherwise."""
+"""Default outputs."""
 
 
 def _loss_share(runs: xr.Dataset) -> xr.DataArray:

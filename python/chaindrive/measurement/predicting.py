@@ -84,8 +84,8 @@ def predict(
     drive
         Another drive with the fitted parameters in it; the calibrated one when absent.
     reach
-        How many times what it was, or which part of it, a value in `at` may be [–]: a fit says less
-        and less of what is far away. Assumed; beyond, the prediction is refused.
+        Largest factor, up or down, between a value in `at` and in the fit [–] (assumed). Beyond it
+        the prediction is refused: a fit says little of what is far away.
     telling
         Greatest half width over the value that is told as a prediction [–].
     phases

@@ -56,11 +56,7 @@ def tornado(found: xr.Dataset, output: str | None = None, *, ax: Axes | None = N
             interval = np.nan_to_num(width[order, end])
             shown: dict[str, Any] = {"xerr": interval, "error_kw": {"lw": 0.8, "ecolor": LIMIT}}
             ax.barh(places, share[order, end], label=label, **look, **shown)
-        ax.set_yticks(places, [str(own["assumption"].to_numpy()[at]) for at in order])
-        ax.axvline(0.0, color=LIMIT, lw=0.8)
-        ax.set_title(str(own["output"].item()))
-        ax.set_xlabel("change [%]")
-        legend_below(ax)
+        _name(ax, own, own["assumption"].to_numpy()[order], "change [%]")
     return ax
 
 
@@ -100,12 +96,17 @@ def sobol_indices(found: xr.Dataset, output: str | None = None, *, ax: Axes | No
                 xerr=width,
                 error_kw={"lw": 0.8, "ecolor": LIMIT},
             )
-        ax.set_yticks(places, [str(own["parameter"].to_numpy()[at]) for at in order])
-        ax.axvline(0.0, color=LIMIT, lw=0.8)
-        ax.set_title(str(own["output"].item()))
-        ax.set_xlabel("share of the variance [–]")
-        legend_below(ax)
+        _name(ax, own, own["parameter"].to_numpy()[order], "share of the variance [–]")
     return ax
+
+
+def _name(ax: Axes, own: xr.Dataset, rows: np.ndarray, across: str) -> None:
+    """Name the rows of bars, the axis across them, and the output."""
+    ax.set_yticks(np.arange(len(rows)), [str(it) for it in rows])
+    ax.axvline(0.0, color=LIMIT, lw=0.8)
+    ax.set_title(str(own["output"].item()))
+    ax.set_xlabel(across)
+    legend_below(ax)
 
 
 def _of(found: xr.Dataset, output: str | None, needed: str, what: str) -> xr.Dataset:

@@ -68,7 +68,7 @@ pub(crate) struct Compare {
     json: bool,
 }
 
-/// How the runs behind an answer are made.
+/// Length, store and number of the runs behind an answer.
 #[derive(Debug, Args, Serialize)]
 struct Runs {
     /// End of the runs, such as "0.5 s"
@@ -88,7 +88,19 @@ struct Runs {
     json: bool,
 }
 
-/// What is read off a drive.
+/// Diagram of an answer.
+#[derive(Debug, Args, Serialize)]
+struct Diagram {
+    /// Diagram (.png, .svg, .pdf)
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+
+    /// Replaces an earlier diagram
+    #[arg(long)]
+    overwrite: bool,
+}
+
+/// Outputs of a drive.
 #[derive(Debug, Args, Serialize)]
 struct Outputs {
     /// A statistic of a sweep, such as "span_tension_std[driven-driver]", or loss_share; may be repeated
@@ -111,8 +123,7 @@ pub(crate) struct Calibrate {
     #[arg(long, value_name = "PATH=LOW..HIGH", required = true)]
     free: Vec<String>,
 
-    /// What something else knows of a fitted value: mean and standard deviation, such as "chain.stiffness=20 MN/m±1 MN/m"; may
-    /// be repeated
+    /// Prior of a fitted value: mean and standard deviation, such as "chain.stiffness=20 MN/m±1 MN/m"; may be repeated
     #[arg(long, value_name = "PATH=MEAN±DEVIATION")]
     prior: Vec<String>,
 
@@ -144,7 +155,7 @@ pub(crate) struct Predict {
     #[arg(long, value_name = "PATH=VALUE")]
     at: Vec<String>,
 
-    /// How many times what it was a value may be; 3 unless given
+    /// Largest factor, up or down, between a value there and in the fit; 3 unless given
     #[arg(long, value_name = "N")]
     reach: Option<f64>,
 
@@ -178,13 +189,9 @@ pub(crate) struct Uncertainty {
     #[arg(long, value_name = "N")]
     seed: Option<u32>,
 
-    /// Diagram of the indices (.png, .svg, .pdf)
-    #[arg(short, long, value_name = "OUT")]
-    output: Option<PathBuf>,
-
-    /// Replaces an earlier diagram
-    #[arg(long)]
-    overwrite: bool,
+    #[command(flatten)]
+    #[serde(flatten)]
+    diagram: Diagram,
 
     #[command(flatten)]
     #[serde(flatten)]
@@ -206,13 +213,9 @@ pub(crate) struct Tornado {
     #[arg(long, value_name = "PATH=LOW..HIGH", required = true)]
     range: Vec<String>,
 
-    /// Diagram (.png, .svg, .pdf)
-    #[arg(short, long, value_name = "OUT")]
-    output: Option<PathBuf>,
-
-    /// Replaces an earlier diagram
-    #[arg(long)]
-    overwrite: bool,
+    #[command(flatten)]
+    #[serde(flatten)]
+    diagram: Diagram,
 
     #[command(flatten)]
     #[serde(flatten)]

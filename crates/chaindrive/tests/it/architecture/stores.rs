@@ -31,7 +31,7 @@ fn compiled(selected: &[&str]) -> BTreeSet<String> {
     names.map(str::to_owned).collect()
 }
 
-/// What writes no results has nothing that writes them: the core for browsers, replays, units. The command has all of it.
+/// Libraries of stores are part of the command, and of no core for browsers, replay or unit.
 #[test]
 fn libraries_of_stores_come_with_their_feature() {
     let core = compiled(&["--package", "chaindrive", "--no-default-features"]);
@@ -66,7 +66,7 @@ fn one_file_asks_for_the_time() {
     assert_eq!(asking, [Path::new("clock.rs")]);
 }
 
-/// Where the target is installed (`rustup target add wasm32-unknown-unknown`).
+/// The check is skipped without the target: `rustup target add wasm32-unknown-unknown` installs it.
 #[test]
 #[ignore = "compiles some eighty libraries; `make validation` runs it"]
 fn the_core_compiles_for_browsers() {
