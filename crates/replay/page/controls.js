@@ -1,8 +1,5 @@
 // What the reader can do: play, seek, look closer, follow, find the next contact.
 
-/** Shares of real time that can be chosen. */
-const SPEEDS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 50000];
-
 const KEYS = [
   ['space', 'play, pause'],
   ['← →', 'one frame back, on; with shift a hundred'],
@@ -213,7 +210,7 @@ function listenToControls(player) {
   byId('account').onclick = () => open('story');
   byId('scrub').max = film.frames - 1;
   byId('scrub').oninput = (event) => player.seek(Number(event.target.value));
-  for (const slowness of SPEEDS) byId('speed').add(new Option(slowness === 1 ? 'real time' : `1 : ${slowness}`, slowness));
+  fillSpeeds(byId('speed'));
   byId('speed').value = player.slowness;
   byId('speed').onchange = (event) => {
     player.slowness = Number(event.target.value);

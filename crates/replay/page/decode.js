@@ -105,13 +105,6 @@ async function readFilm() {
     });
   }
 
-  // Where the rollers and links of every chain begin.
-  let [roller, link] = [0, 0];
-  for (const chain of film.chains) {
-    Object.assign(chain, { firstRoller: roller, firstLink: link });
-    roller += chain.rollers;
-    link += chain.links;
-  }
-  Object.assign(film, { rollers: roller, links: link });
+  placeChains(film);
   return film;
 }

@@ -2,6 +2,14 @@
 
 const byId = (id) => document.getElementById(id);
 
+/** Shares of real time that can be chosen. */
+const SPEEDS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 50000];
+
+/** Offers them in a list. */
+function fillSpeeds(choice) {
+  for (const slowness of SPEEDS) choice.add(new Option(slowness === 1 ? 'real time' : `1 : ${slowness}`, slowness));
+}
+
 /** Scale of tension in the legend: its colours, and its ends as texts. */
 function tellTension(view, [slackest, tightest]) {
   const c = byId('scale').getContext('2d');
@@ -27,9 +35,8 @@ function tellLengths(view) {
   byId('arrow').firstElementChild.setAttribute('d', `M0 5H${arrow}m-5-2.5l5 2.5l-5 2.5`);
 }
 
-/** Mouse, pen and fingers on the picture. */
+/** Mouse, pen and fingers on the picture; what `player.view` shows may be another drive later. */
 function listenToPicture(canvas, player) {
-  const { view } = player;
   const fingers = new Map();
   let moved = 0;
   const place = (event) => [event.offsetX, event.offsetY];
@@ -40,7 +47,8 @@ function listenToPicture(canvas, player) {
   });
   canvas.addEventListener('pointermove', (event) => {
     const before = fingers.get(event.pointerId);
-    if (!before) return;
+    const { view } = player;
+    if (!before || !view) return;
     const now = place(event);
     const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
     moved += Math.hypot(dx, dy);
@@ -59,7 +67,8 @@ function listenToPicture(canvas, player) {
     player.dirty = true;
   });
   const lift = (event) => {
-    const single = fingers.size === 1 && moved <= 4 && event.type === 'pointerup';
+    const { view } = player;
+    const single = view && fingers.size === 1 && moved <= 4 && event.type === 'pointerup';
     if (single) {
       const roller = view.rollerAt(...place(event));
       if (roller >= 0 || view.followed >= 0) player.follow(roller === view.followed ? -1 : roller);
@@ -71,7 +80,7 @@ function listenToPicture(canvas, player) {
   canvas.addEventListener('pointercancel', lift);
   canvas.addEventListener('wheel', (event) => {
     event.preventDefault();
-    view.zoom(Math.exp(-0.0015 * event.deltaY), ...place(event));
+    player.view?.zoom(Math.exp(-0.0015 * event.deltaY), ...place(event));
     player.dirty = true;
   }, { passive: false });
 }

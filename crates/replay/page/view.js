@@ -364,3 +364,14 @@ class View {
     });
   }
 }
+
+/** Tells every chain of a film where its rollers and links begin, and counts them. */
+function placeChains(film) {
+  let [roller, link] = [0, 0];
+  for (const chain of film.chains) {
+    Object.assign(chain, { firstRoller: roller, firstLink: link });
+    roller += chain.rollers;
+    link += chain.links;
+  }
+  Object.assign(film, { rollers: roller, links: link });
+}
