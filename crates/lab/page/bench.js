@@ -44,10 +44,28 @@ async function findHorizon(lab, follow) {
   tellHorizon(lab);
 }
 
-/** Time for which the twins of a drive are followed at first [s]: cheap beside what is played. */
-function firstFollow(facts) {
+/** Milliseconds of play before the horizon is sought: how fast the machine computes is known then. */
+const BEFORE_HORIZON = 1500;
+
+/** Wall time that the twins of a drive may take at first [s]. */
+const PATIENCE = 4;
+
+/** Time for which the twins are followed at first [s]: 40 pitches, or what comes within the patience. */
+function firstFollow({ facts, rate }) {
   const until = facts.scene.run?.until ?? 1;
-  return facts.mesh ? Math.min(until, 40 * facts.mesh) : 0.25 * until;
+  const most = facts.mesh ? Math.min(until, 40 * facts.mesh) : 0.25 * until;
+  return Math.min(most, Math.max(0.1 * most, 0.5 * PATIENCE * (rate ?? Infinity)));
+}
+
+/** Seeks the horizon of a drive that has just been started. */
+function seekHorizon(lab) {
+  const { opened } = lab;
+  lab.horizonErrand.stop();
+  Object.assign(lab, { horizon: null, rate: null });
+  byId('horizon').textContent = '';
+  setTimeout(() => {
+    if (opened === lab.opened && lab.ready) findHorizon(lab, firstFollow(lab));
+  }, BEFORE_HORIZON);
 }
 
 function tellHorizon(lab) {

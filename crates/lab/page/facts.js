@@ -1,5 +1,8 @@
 // What the page has to know of a drive: shafts that turn, loads, what can be changed. Everything in SI units.
 
+/** Turns a minute in a radian a second. */
+const RPM = 30 / Math.PI;
+
 /** A list that a scene may leave out. */
 const list = (value) => value ?? [];
 
@@ -35,8 +38,8 @@ function shaftsOf(scene) {
   return [...named, ...own.map((it) => ({ ...it, place: `sprockets.${it.name}`, carries: [it.name] }))];
 }
 
-/** Facts of a scene with every default written out. */
-function factsOf(scene) {
+/** Facts of a scene that was read: with every default written out, and how its chains lie. */
+function factsOf({ resolved: scene, layout }) {
   const shafts = shaftsOf(scene);
   const sprockets = list(scene.sprockets).map((it) => {
     const shaft = shafts.find((on) => on.carries.includes(it.name));
@@ -48,7 +51,7 @@ function factsOf(scene) {
   const speed = driver ? meanSpeed(driver.shaft.motion) ?? driver.shaft.speed : 0;
   // A pitch passes in T = 2π/(z |ω|).
   const mesh = driver ? (2 * Math.PI) / (driver.teeth * Math.abs(speed)) : null;
-  return { scene, shafts, sprockets, chains, driver, mesh, pitch: chains[0]?.pitch ?? 0.01 };
+  return { scene, layout: list(layout), shafts, sprockets, chains, driver, mesh, pitch: chains[0]?.pitch ?? 0.01 };
 }
 
 /** Samples taken while a pitch passes. */

@@ -93,22 +93,23 @@ function curvesOf(facts, started, every) {
     if (links[i]) add('links', `link ${links[i][0]}`, (row) => row[links[i][1]]);
   }
   const sprocket = (name) => facts.sprockets.find((it) => it.name === name);
-  const isFree = (name) => !sprocket(name)?.shaft?.motion;
-  const anyFree = facts.sprockets.some((it) => isFree(it.name));
+  // Shown at first: what is loaded, not idlers, which turn at speeds of their own.
+  const isLoaded = (it) => list(it?.shaft?.load).length + list(it?.shaft?.drive).length > 0;
+  const anyLoaded = facts.sprockets.some(isLoaded);
   for (const [label, at] of entries('sprocket_speed')) {
-    add('speed', label, (row) => row[at] * (30 / Math.PI), isFree(label) || !anyFree);
+    add('speed', label, (row) => row[at] * RPM, isLoaded(sprocket(label)) || !anyLoaded);
   }
   const angles = new Map(entries('sprocket_angle'));
-  const { driver, pitch } = facts;
-  for (const [label, at] of angles) {
-    const driven = sprocket(label);
-    if (!driver || !driven || driven === driver || driven.chain !== driver.chain) continue;
-    // ε = (s_b z_b θ_b − s_a z_a θ_a) p/2π
-    const from = angles.get(driver.name);
-    const [a, b] = [driver.sign * driver.teeth, driven.sign * driven.teeth];
-    const scale = (1e6 * pitch) / (2 * Math.PI);
-    const isLoaded = list(driven.shaft?.load).length > 0;
-    add('transmission', `${label} after ${driver.name}`, (row) => (b * row[at] - a * row[from]) * scale, isLoaded);
+  for (const { pitch, stops } of facts.layout) {
+    const members = stops.map((it) => sprocket(it.name)).filter(Boolean);
+    const first = members.includes(facts.driver) ? facts.driver : members[0];
+    for (const driven of members.filter((it) => it !== first)) {
+      // ε = (s_b z_b θ_b − s_a z_a θ_a) p/2π
+      const [from, at] = [angles.get(first.name), angles.get(driven.name)];
+      const [a, b] = [first.sign * first.teeth, driven.sign * driven.teeth];
+      const scale = (1e6 * pitch) / (2 * Math.PI);
+      add('transmission', `${driven.name} after ${first.name}`, (row) => (b * row[at] - a * row[from]) * scale, isLoaded(driven));
+    }
   }
   // Of several at least one is shown.
   const errors = curves.filter((it) => it.plot === 'transmission');

@@ -1,9 +1,7 @@
 // What can be changed: some things while the drive moves, others with a start anew.
 
-const RPM = 30 / Math.PI;
-
-/** A range for a slider about a value that is not negative, up to a multiple of it. */
-const upTo = (value, times, otherwise) => [0, value > 0 ? times * value : otherwise];
+/** A range for a slider: from zero to a multiple of a value. */
+const upTo = (value, times, otherwise) => (value < 0 ? [times * value, 0] : [0, value > 0 ? times * value : otherwise]);
 
 /** Inputs that act at once: `{ key, label, unit, factor, range, start, set(value) → questions for the worker }`, values in SI. */
 function liveInputs(facts, isTuned) {

@@ -36,7 +36,7 @@ class Lab {
 
   /** Starts a drive that was read; `keep` has the curves before stay as those of A. */
   async start(about, keep) {
-    const facts = factsOf(about.resolved);
+    const facts = factsOf(about);
     const every = sampling(facts);
     const given = { text: about.text, name: about.name, tunable: tunablePlaces(facts), channels: channelsOf(facts), every };
     const wasPlaying = this.playing;
@@ -49,7 +49,8 @@ class Lab {
     if (opened !== this.opened) return;
     const before = keep && this.history?.length ? this.history.copyFrom(-Infinity) : null;
     const sameCurves = before && this.sameCurves(before, facts, started, every);
-    Object.assign(this, { scene: about, facts, given, started, kept: null, safe: null, ready: true });
+    // The answer to the last tick, of the drive before, is not waited for.
+    Object.assign(this, { scene: about, facts, given, started, kept: null, safe: null, ready: true, asked: false, spent: [] });
     this.moves.clear();
     this.pending.clear();
     this.film = new LiveFilm(started);
@@ -344,6 +345,7 @@ class Lab {
     const isBehind = plays !== null && this.spent.length > 20 && plays < 0.85 * this.pace;
     byId('plays').className = isBehind ? 'caution' : '';
     byId('plays').title = isBehind ? `asked for ${share(this.pace)}: this machine computes no faster` : '';
+    if (spent > 0) this.rate = done / spent;
     if (spent > 0) byId('computes').textContent = `computes ${share(done / spent)} real time`;
   }
 
@@ -369,6 +371,7 @@ class Lab {
     tellLengths(this.view);
     this.ledger.draw(this.history);
     if (!byId('spectrum').hidden) this.spectrum.draw();
+    if (!byId('energy').hidden && this.ready) this.core.ask('statistics').then(tellStepping, () => {});
     tellHorizon(this);
   }
 }

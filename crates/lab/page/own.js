@@ -15,7 +15,7 @@ class OwnDrive {
       };
     }
     byId('own-moved').onchange = (event) => {
-      this.plan.moved = event.target.value;
+      this.plan.moved = event.target.value || null;
       this.change(false);
     };
     byId('own-run').onclick = () => this.run();
@@ -53,8 +53,8 @@ class OwnDrive {
     byId('own-wheels').replaceChildren(...plan.wheels.map((wheel) => this.wheelRow(wheel)));
     byId('own-guides').replaceChildren(...plan.guides.map((guide) => this.guideRow(guide)));
     const moved = byId('own-moved');
-    moved.replaceChildren(...plan.wheels.map(({ name }) => new Option(name, name)));
-    moved.value = plan.mover.name;
+    moved.replaceChildren(new Option('what moves least', ''), ...plan.wheels.map(({ name }) => new Option(name, name)));
+    moved.value = plan.moved ?? '';
   }
 
   /** A field of a row, `scale` times what is kept. */
@@ -172,22 +172,27 @@ class OwnDrive {
 
   /** Numbers of links that close, each with the place of the wheel that moves for it. */
   async fitsOf(plan) {
-    try {
-      const about = await this.lab.core.ask('read', { text: plan.text(true), name: 'own drive' });
-      const fits = about.layout?.[0]?.fits ?? [];
-      const mine = fits.filter((it) => it.body === plan.mover.name && it.centre);
-      if (mine.length) return mine;
-    } catch (error) {
-      if (error.ended) throw error;
+    const found = [];
+    for (const mover of plan.movers) {
+      try {
+        const about = await this.lab.core.ask('read', { text: plan.text(mover), name: 'own drive' });
+        found.push(...(about.layout?.[0]?.fits ?? []).filter((it) => it.body === mover.name && it.centre));
+      } catch (error) {
+        // Where one cannot close the loop another may.
+        if (error.ended) throw error;
+      }
     }
-    // The mover reaches none: the wheel that closes with the least way.
+    if (found.length) return found;
     return this.layout.fits.filter((it) => it.centre && plan.wheels.some((wheel) => wheel.name === it.body));
   }
 
-  /** Links that suit best: even, and the nearest. */
+  /** Numbers of links that close: even ones first, and those for which a wheel moves least. */
+  get sorted() {
+    return [...(this.fits ?? [])].sort((a, b) => a.offset_link - b.offset_link || Math.abs(a.travel) - Math.abs(b.travel));
+  }
+
   get best() {
-    const sorted = [...(this.fits ?? [])].sort((a, b) => a.offset_link - b.offset_link || Math.abs(a.travel) - Math.abs(b.travel));
-    return sorted[0] ?? null;
+    return this.sorted[0] ?? null;
   }
 
   get isClosed() {
@@ -207,7 +212,8 @@ class OwnDrive {
     const { pitches } = layout.counts;
     byId('own-state').textContent = this.isClosed ? `The loop closes with ${plan.links} links.` : `The chain's way takes ${pitches.toFixed(2)} pitches.`;
     if (this.isClosed) return;
-    for (const fit of this.fits) {
+    // Four are enough to choose from.
+    for (const fit of this.sorted.slice(0, 4)) {
       const button = document.createElement('button');
       button.type = 'button';
       const isBest = fit === this.best;

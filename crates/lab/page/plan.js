@@ -128,17 +128,17 @@ class Plan {
     this.links = null;
   }
 
-  /** The wheel that moves until the links close: the one chosen, an idler, or the last that is driven. */
-  get mover() {
-    return this.wheels.find((it) => it.name === this.moved)
-      ?? this.wheels.find((it) => ['idler', 'outside'].includes(it.role))
-      ?? this.wheels.findLast((it) => it.role === 'driven') ?? this.wheels[0];
+  /** Wheels that may move until the links close: the one chosen, else an idler and the last that is driven. */
+  get movers() {
+    const chosen = this.wheels.find((it) => it.name === this.moved);
+    if (chosen) return [chosen];
+    const idler = this.wheels.find((it) => ['idler', 'outside'].includes(it.role));
+    return [idler, this.wheels.findLast((it) => it.role === 'driven')].filter(Boolean);
   }
 
-  /** Direction in which the mover tightens the chain. */
-  get direction() {
-    const { mover, wheels } = this;
-    const rest = wheels.filter((it) => it !== mover);
+  /** Direction in which a wheel tightens the chain. */
+  direction(mover) {
+    const rest = this.wheels.filter((it) => it !== mover);
     const middle = (axis) => rest.reduce((sum, it) => sum + it[axis], 0) / rest.length;
     const [dx, dy] = [mover.x - middle('x'), mover.y - middle('y')];
     const length = Math.hypot(dx, dy) || 1;
@@ -146,13 +146,13 @@ class Plan {
     return [(sign * dx) / length, (sign * dy) / length];
   }
 
-  /** The text of the scene; `adjusted` lets the mover go wherever the links close. */
-  text(adjusted = false) {
+  /** The text of the scene; a mover goes wherever the links close. */
+  text(mover = null) {
     const { chain, order } = this;
     const millimetres = (value) => `"${+(1e3 * value).toPrecision(12)} mm"`;
     const lines = ['# Laid out in the lab. What is called assumed there nobody has measured: put in what you know.', '', 'title = "A drive of one\'s own"', '',
       '[chain]', `type = ${JSON.stringify(chain.name)}`];
-    if (this.links && !adjusted) lines.push(`links = ${this.links}`);
+    if (this.links && !mover) lines.push(`links = ${this.links}`);
     lines.push('damping_ratio = 0.03 # assumed: no measured value is published, 0.01 to 0.05 are in use');
     for (const wheel of this.wheels) {
       lines.push('', '[[sprockets]]', `name = ${JSON.stringify(wheel.name)}`, `teeth = ${wheel.teeth}`, `centre = [${millimetres(wheel.x)}, ${millimetres(wheel.y)}]`);
@@ -181,9 +181,9 @@ class Plan {
     const stops = order.flatMap((wheel) => [wheel.name, ...this.guides.filter((it) => it.after === wheel.name && it.bow > 0).map((it) => it.name)]);
     lines.push('', '[route]', `stops = [${stops.map((it) => JSON.stringify(it)).join(', ')}]`,
       `pretension = "${+(TIGHT * chain.breaking_load).toPrecision(3)} N" # assumed: 2 % of the breaking load`);
-    if (adjusted) {
-      const [dx, dy] = this.direction;
-      lines.push(`adjust = { kind = "sprocket", name = ${JSON.stringify(this.mover.name)}, direction = [${dx}, ${dy}], within = ${millimetres(6 * chain.pitch)} }`);
+    if (mover) {
+      const [dx, dy] = this.direction(mover);
+      lines.push(`adjust = { kind = "sprocket", name = ${JSON.stringify(mover.name)}, direction = [${dx}, ${dy}], within = ${millimetres(6 * chain.pitch)} }`);
     }
     const driver = this.wheels.find((it) => it.role === 'drives');
     const turn = driver.value ? 60 / Math.abs(driver.value) : 1;

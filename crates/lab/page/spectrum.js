@@ -145,6 +145,10 @@ class Spectrum {
         if ((right - left) * (mesh / end) > 26 || order % 2) c.fillText(`${order * teeth}`, x(order * mesh), lower + 4);
       }
     }
+    c.save();
+    c.beginPath();
+    c.rect(left, upper, right - left, lower - upper);
+    c.clip();
     c.strokeStyle = colours.curves[0];
     c.lineWidth = 1.2;
     c.lineJoin = 'round';
@@ -154,6 +158,7 @@ class Spectrum {
       else c.lineTo(x(i * step), y(found[i]));
     }
     c.stroke();
+    c.restore();
     const orders = mesh ? ` Blue lines: mesh orders of ${this.facts.driver.name}, z n with z = ${this.facts.driver.teeth}.` : '';
     this.note.textContent = `Amplitudes of the last ${quantity(values.length * this.history.every, 's')}, Hann window, `
       + `a line every ${quantity(step, 'Hz')}.${orders}`;

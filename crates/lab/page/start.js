@@ -83,6 +83,10 @@ function listenToLab(lab) {
     event.preventDefault();
     action();
   });
+  // After a click the keys are those of the page again; whoever came by the keyboard keeps his place.
+  document.addEventListener('click', (event) => {
+    if (event.detail) event.target.closest('button')?.blur();
+  });
   byId('help').querySelector('table').append(...LAB_KEYS.map((cells) => {
     const row = document.createElement('tr');
     for (const cell of cells) row.insertCell().textContent = cell;
@@ -137,7 +141,7 @@ async function start() {
   const lab = new Lab(module);
   lab.horizonErrand = new Errand(module);
   lab.reportErrand = new Errand(module);
-  lab.onStarted = () => findHorizon(lab, firstFollow(lab.facts));
+  lab.onStarted = () => seekHorizon(lab);
   /** Opens a scene; the drive before goes on where it cannot be. */
   const open = async (asked) => {
     try {
