@@ -1,10 +1,5 @@
 // What the reader can do: play, seek, look closer, follow, find the next contact.
 
-const byId = (id) => document.getElementById(id);
-
-/** Shares of real time that can be chosen. */
-const SPEEDS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 50000];
-
 const KEYS = [
   ['space', 'play, pause'],
   ['← →', 'one frame back, on; with shift a hundred'],
@@ -144,7 +139,7 @@ class Player {
     const { view, film: { arrays } } = this;
     const roller = view.followed >= 0 ? view.followed : view.marked;
     byId('followed').hidden = roller < 0;
-    this.tellLengths();
+    tellLengths(view);
     if (roller < 0) return;
     const [x, y] = view.roller(roller);
     const place = (value) => withMinus(`${(value * 1e3).toFixed(2)} mm`);
@@ -161,20 +156,6 @@ class Player {
     const cells = rows.map(([name, value]) => `<tr><td>${name}</td><td>${value}</td></tr>`).join('');
     byId('followed').innerHTML = `<table><caption></caption>${cells}</table>`;
     byId('followed').querySelector('caption').textContent = told;
-  }
-
-  /** Scale bar and the arrow of the legend, which change as one looks closer. */
-  tellLengths() {
-    const { view } = this;
-    const length = roundDown(110 / view.window.scale);
-    byId('bar').style.width = `${length * view.window.scale}px`;
-    byId('length').textContent = quantity(length, 'm');
-    if (byId('force').hidden) return;
-    const force = roundDown(view.largestForce);
-    const arrow = (view.longest() * force) / view.largestForce;
-    byId('sample').textContent = quantity(force, 'N');
-    byId('arrow').setAttribute('width', arrow + 2);
-    byId('arrow').firstElementChild.setAttribute('d', `M0 5H${arrow}m-5-2.5l5 2.5l-5 2.5`);
   }
 }
 
@@ -203,55 +184,6 @@ function contactsOf(film) {
   return contacts;
 }
 
-/** Mouse, pen and fingers on the picture. */
-function listenToPicture(canvas, player) {
-  const { view } = player;
-  const fingers = new Map();
-  let moved = 0;
-  const place = (event) => [event.offsetX, event.offsetY];
-  canvas.addEventListener('pointerdown', (event) => {
-    canvas.setPointerCapture(event.pointerId);
-    fingers.set(event.pointerId, place(event));
-    moved = 0;
-  });
-  canvas.addEventListener('pointermove', (event) => {
-    const before = fingers.get(event.pointerId);
-    if (!before) return;
-    const now = place(event);
-    const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
-    moved += Math.hypot(dx, dy);
-    if (fingers.size === 2) {
-      const other = [...fingers].find(([id]) => id !== event.pointerId)[1];
-      const apart = (from) => Math.hypot(from[0] - other[0], from[1] - other[1]);
-      const middle = [0.5 * (now[0] + other[0]), 0.5 * (now[1] + other[1])];
-      view.zoom(apart(now) / Math.max(1, apart(before)), ...middle);
-      view.pan(0.5 * dx, 0.5 * dy);
-    } else if (moved > 4) {
-      canvas.classList.add('dragged');
-      if (view.followed >= 0) player.follow(-1);
-      view.pan(dx, dy);
-    }
-    fingers.set(event.pointerId, now);
-    player.dirty = true;
-  });
-  const lift = (event) => {
-    const single = fingers.size === 1 && moved <= 4 && event.type === 'pointerup';
-    if (single) {
-      const roller = view.rollerAt(...place(event));
-      if (roller >= 0 || view.followed >= 0) player.follow(roller === view.followed ? -1 : roller);
-    }
-    fingers.delete(event.pointerId);
-    canvas.classList.remove('dragged');
-  };
-  canvas.addEventListener('pointerup', lift);
-  canvas.addEventListener('pointercancel', lift);
-  canvas.addEventListener('wheel', (event) => {
-    event.preventDefault();
-    view.zoom(Math.exp(-0.0015 * event.deltaY), ...place(event));
-    player.dirty = true;
-  }, { passive: false });
-}
-
 /** Buttons, lists and keys. */
 function listenToControls(player) {
   const { view, film } = player;
@@ -278,7 +210,7 @@ function listenToControls(player) {
   byId('account').onclick = () => open('story');
   byId('scrub').max = film.frames - 1;
   byId('scrub').oninput = (event) => player.seek(Number(event.target.value));
-  for (const slowness of SPEEDS) byId('speed').add(new Option(slowness === 1 ? 'real time' : `1 : ${slowness}`, slowness));
+  fillSpeeds(byId('speed'));
   byId('speed').value = player.slowness;
   byId('speed').onchange = (event) => {
     player.slowness = Number(event.target.value);

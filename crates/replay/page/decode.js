@@ -64,6 +64,21 @@ class Numbers {
     }
     return [this.value(least), this.value(most)];
   }
+
+  /** Ends of a scale: all but one in a thousand of some values, evenly over all, lie between them. */
+  scaleRange() {
+    const { whole } = this;
+    const stride = Math.max(1, Math.floor(whole.length / 20000));
+    const some = [];
+    for (let i = 0; i < whole.length; i += stride) {
+      if (whole[i] !== this.missing) some.push(whole[i]);
+    }
+    if (!some.length) return [0, 0];
+    const sorted = Int32Array.from(some).sort();
+    const last = sorted.length - 1;
+    const end = (share) => this.value(sorted[Math.round(share * last)]);
+    return [Math.min(0, end(0.001)), end(0.999)];
+  }
 }
 
 /** The whole film, read from the page. */
@@ -90,13 +105,6 @@ async function readFilm() {
     });
   }
 
-  // Where the rollers and links of every chain begin.
-  let [roller, link] = [0, 0];
-  for (const chain of film.chains) {
-    Object.assign(chain, { firstRoller: roller, firstLink: link });
-    roller += chain.rollers;
-    link += chain.links;
-  }
-  Object.assign(film, { rollers: roller, links: link });
+  placeChains(film);
   return film;
 }

@@ -45,16 +45,9 @@ function describeScales(film, view) {
   const { link_tension: tension, contact_force: force, contact_direction: direction } = film.arrays;
   byId('tension').hidden = !tension;
   if (tension) {
-    const c = byId('scale').getContext('2d');
-    const { width, height } = byId('scale');
-    view.colours.scale.forEach((colour, i) => {
-      c.fillStyle = colour;
-      c.fillRect((i * width) / STEPS, 0, width / STEPS + 1, height);
-    });
     const [least, most] = tension.range();
     const [slack, tight] = view.tension;
-    byId('slackest').textContent = (least < slack ? '≤ ' : '') + quantity(slack, 'N');
-    byId('tightest').textContent = (most > tight ? '≥ ' : '') + quantity(tight, 'N');
+    tellTension(view, [(least < slack ? '≤ ' : '') + quantity(slack, 'N'), (most > tight ? '≥ ' : '') + quantity(tight, 'N')]);
   }
   byId('force').hidden = !(force && direction && view.largestForce > 0);
 }

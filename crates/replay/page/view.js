@@ -17,9 +17,10 @@ class View {
     const layers = [0, 1, 2, 2];
     this.backToFront = [...film.bodies.keys()].sort((a, b) => layers[layer(a)] - layers[layer(b)]);
     this.bounds = this.boundsOfAll();
-    this.tension = film.arrays.link_tension && scaleRange(film.arrays.link_tension);
-    const force = film.arrays.contact_force;
-    this.largestForce = force ? scaleRange(force)[1] : 0;
+    // Ends of the scale of tension [N], and the force of the longest arrow [N]; where a drive is computed they follow it.
+    const { link_tension: tension, contact_force: force } = film.arrays;
+    this.tension = tension && tension.scaleRange();
+    this.largestForce = force ? force.scaleRange()[1] : 0;
     this.pitch = film.chains.length ? film.chains[0].pitch : 0.01;
     this.colours = palette();
     // Centre [m] and pixels a metre; none until the size of the window is known.
@@ -364,17 +365,13 @@ class View {
   }
 }
 
-/** Ends of a scale: all but one in a thousand of some values, evenly over all, lie between them. */
-function scaleRange(numbers) {
-  const { whole } = numbers;
-  const stride = Math.max(1, Math.floor(whole.length / 20000));
-  const some = [];
-  for (let i = 0; i < whole.length; i += stride) {
-    if (whole[i] !== numbers.missing) some.push(whole[i]);
+/** Tells every chain of a film where its rollers and links begin, and counts them. */
+function placeChains(film) {
+  let [roller, link] = [0, 0];
+  for (const chain of film.chains) {
+    Object.assign(chain, { firstRoller: roller, firstLink: link });
+    roller += chain.rollers;
+    link += chain.links;
   }
-  if (!some.length) return [0, 0];
-  const sorted = Int32Array.from(some).sort();
-  const last = sorted.length - 1;
-  const end = (share) => numbers.value(sorted[Math.round(share * last)]);
-  return [Math.min(0, end(0.001)), end(0.999)];
+  Object.assign(film, { rollers: roller, links: link });
 }

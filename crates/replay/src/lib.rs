@@ -14,6 +14,6 @@ mod recorded;
 mod stream;
 
 pub use animation::{Animation, Body, Chain, Contact, Curve, Frames, Outline, PageTexts};
-pub use page::page;
+pub use page::{PICTURE, STYLE, page};
 pub use picture::Picture;
 pub use recorded::{AnimationError, MOST_FRAMES, Selection, film};

@@ -9,12 +9,18 @@ use crate::animation::{Animation, Chain, PageTexts};
 use crate::stream::{LEVELS, LEVELS_OF_CURVES, Stream, Streams};
 
 const PAGE: &str = include_str!("../page/page.html");
-const STYLE: &str = include_str!("../page/style.css");
-/// The programs of the page, each a file, in the order in which they run.
-const PROGRAMS: [&str; 6] = [
-    include_str!("../page/decode.js"),
+/// Style of pages on which a drive moves: paper, ink, the picture, its legend, plots, buttons.
+pub const STYLE: &str = include_str!("../page/style.css");
+/// Programs of such pages, in the order in which they run: colours, axes, the picture, and what it answers to.
+pub const PICTURE: [&str; 4] = [
     include_str!("../page/colours.js"),
+    include_str!("../page/axes.js"),
     include_str!("../page/view.js"),
+    include_str!("../page/picture.js"),
+];
+/// The programs of a replay, before the picture and after it.
+const DECODE: &str = include_str!("../page/decode.js");
+const PROGRAMS: [&str; 3] = [
     include_str!("../page/plots.js"),
     include_str!("../page/controls.js"),
     include_str!("../page/start.js"),
@@ -108,9 +114,10 @@ pub fn page(film: &Animation) -> String {
     } else {
         &film.about.title
     };
+    let program = [DECODE, &PICTURE.concat(), &PROGRAMS.concat()].concat();
     // The texts of the run go in last: nothing is looked for in them.
     PAGE.replace("{{style}}", STYLE)
-        .replace("{{program}}", &PROGRAMS.concat())
+        .replace("{{program}}", &program)
         .replace("{{title}}", &escaped(title))
         .replace("{{data}}", &STANDARD.encode(&streams.bytes))
         .replace("{{index}}", &index)

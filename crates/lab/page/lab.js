@@ -1,0 +1,397 @@
+// The lab: opens drives, moves them on, and tells what they do.
+
+/** Milliseconds that the worker computes before it answers. */
+const BUDGET = 25;
+
+/** Milliseconds between two snapshots, from which a new worker goes on. */
+const SAFE = 2000;
+
+class Lab {
+  constructor(module) {
+    Object.assign(this, {
+      module, playing: false, asked: false, dirty: true, pending: new Map(), opened: 0, spent: [], frames: 0,
+      scene: null, film: null, view: null, history: null, safe: null, kept: null, moves: new Map(),
+    });
+    this.scrolls = new Scrolls(byId('curves'));
+    this.spectrum = new Spectrum(byId('spectrum-picture'), byId('spectrum-of'), byId('spectrum-note'));
+    this.ledger = new Ledger(byId('ledger'));
+    this.sliders = new Sliders(byId('inputs'), (input) => this.change(input));
+    this.core = this.startCore();
+    this.loop = (now) => this.show(now);
+    requestAnimationFrame(this.loop);
+  }
+
+  startCore() {
+    return new Core(this.module, { ended: (error) => this.recover(error) });
+  }
+
+  /** Opens a scene: `{ text, name }` or `{ preset }`; tells whether it moves. Mistakes are thrown. */
+  async open(asked) {
+    const about = await this.busy('Reading', this.core.ask('read', asked));
+    this.base = { text: about.text, name: about.name };
+    this.changes = new Map();
+    this.sliders.forget();
+    await this.start(about, false);
+  }
+
+  /** Starts a drive that was read; `keep` has the curves before stay as those of A. */
+  async start(about, keep) {
+    const facts = factsOf(about);
+    const every = sampling(facts);
+    const given = { text: about.text, name: about.name, tunable: tunablePlaces(facts), channels: channelsOf(facts), every };
+    const wasPlaying = this.playing;
+    this.pause();
+    this.opened += 1;
+    const opened = this.opened;
+    // What is drawn meanwhile is the drive before; nothing is asked of it any more.
+    this.ready = false;
+    const started = await this.busy('Assembling', this.core.ask('start', given));
+    if (opened !== this.opened) return;
+    const before = keep && this.history?.length ? this.history.copyFrom(-Infinity) : null;
+    const sameCurves = before && this.sameCurves(before, facts, started, every);
+    // The answer to the last tick, of the drive before, is not waited for.
+    Object.assign(this, { scene: about, facts, given, started, kept: null, safe: null, ready: true, asked: false, spent: [] });
+    this.moves.clear();
+    this.pending.clear();
+    this.film = new LiveFilm(started);
+    const shownBefore = this.view?.window;
+    this.view = new View(byId('picture'), this.film);
+    if (keep && shownBefore) this.view.window = shownBefore;
+    this.view.resize();
+    if (keep && shownBefore) Object.assign(this.view, { least: 0.05 * shownBefore.scale, most: 40 * shownBefore.scale });
+    const { curves, channel } = curvesOf(facts, started, every);
+    this.history = new History(curves, every);
+    this.scrolls.open(this.history, facts);
+    this.spectrum.open(this.history, facts);
+    this.ledger.open(channel);
+    if (sameCurves) this.scrolls.keep(before);
+    this.sliders.open(liveInputs(facts, started.isTuned), anewInputs(facts));
+    if (!keep) this.setPace(gentlePace(facts));
+    for (const input of this.sliders.changes.filter((it) => !it.path)) this.change(input);
+    this.take(started);
+    this.scrolls.resize();
+    this.spectrum.draw();
+    tellStepping(started.statistics);
+    byId('title').textContent = about.title || about.name || 'Chain drive';
+    document.title = `${about.title || 'Chain drive'} · lab`;
+    byId('tension').hidden = false;
+    byId('back-to').disabled = true;
+    fillFollow(this.film);
+    this.onStarted?.();
+    if (wasPlaying || !keep) this.play();
+  }
+
+  /** Whether curves of before can stand beside those to come. */
+  sameCurves(before, facts, started, every) {
+    const { curves } = curvesOf(facts, started, every);
+    return curves.length === before.curves.length && curves.every((it, i) => it.label === before.curves[i].label);
+  }
+
+  /** Waits for an answer; what takes longer than a glance is told, and can be stopped. */
+  async busy(what, answer) {
+    const shown = setTimeout(() => {
+      byId('busy').hidden = false;
+      byId('busy-what').textContent = `${what} …`;
+    }, 250);
+    try {
+      return await answer;
+    } finally {
+      clearTimeout(shown);
+      byId('busy').hidden = true;
+    }
+  }
+
+  /** Ends whatever the worker does; the drive goes on from where it was kept last. */
+  stop() {
+    this.core.end();
+    this.recover(null);
+  }
+
+  /** A new worker in place of one that has ended; it goes on from the last snapshot. */
+  async recover(error) {
+    this.core = this.startCore();
+    this.asked = false;
+    this.opened += 1;
+    const { given, safe } = this;
+    const why = error ? `The module stopped: ${error.message}.` : 'Stopped.';
+    if (!given) {
+      tell(`${why} Choose another drive.`, 'bad');
+      return;
+    }
+    if (error && this.failed && performance.now() - this.failed < 8000) {
+      this.pause();
+      this.ready = false;
+      tell(`${why} It stopped twice at the same place; change the drive, or open another.`, 'bad');
+      return;
+    }
+    if (error) this.failed = performance.now();
+    const opened = this.opened;
+    try {
+      const started = await this.busy('Assembling anew', this.core.ask('start', given));
+      const back = safe ? await this.core.ask('restore', { bytes: safe.bytes }) : started;
+      if (opened !== this.opened) return;
+      this.ready = true;
+      this.history.cut(back.time);
+      this.take(back);
+      tell(`${why} A new one goes on from t = ${quantity(back.time, 's', 4)}.`, 'doubt');
+      if (this.playing) this.tick();
+    } catch (second) {
+      this.ready = false;
+      tell(`${why} ${second.message}`, 'bad');
+    }
+  }
+
+  /** Takes what the worker has computed. */
+  take({ time, frame, samples }) {
+    this.time = time;
+    this.film.take(frame);
+    this.ledger.take(samples.rows);
+    this.history.push(samples);
+    this.dirty = true;
+  }
+
+  play() {
+    if (!this.film || this.playing) return;
+    this.playing = true;
+    this.asking = performance.now();
+    byId('play').textContent = '❚❚';
+    byId('play').setAttribute('aria-label', 'Pause');
+    this.tick();
+  }
+
+  pause() {
+    this.playing = false;
+    byId('play').textContent = '▶';
+    byId('play').setAttribute('aria-label', 'Play');
+  }
+
+  /** Asks for the next frame, one at a time. */
+  async tick() {
+    if (!this.playing || this.asked || !this.ready) return;
+    this.asked = true;
+    const { opened } = this;
+    try {
+      await this.flush();
+      const now = performance.now();
+      const passed = Math.min(100, now - this.asking) / 1e3;
+      this.asking = now;
+      const begun = this.time;
+      const answer = await this.core.ask('tick', { until: begun + this.pace * passed, budget: BUDGET });
+      if (opened !== this.opened) return;
+      this.take(answer);
+      this.spent.push({ wall: passed, done: answer.done, spent: answer.spent, late: !answer.reached });
+      if (this.spent.length > 60) this.spent.shift();
+      this.late = !answer.reached;
+      if (!(now - this.keptSafe < SAFE)) {
+        this.keptSafe = now;
+        this.safe = await this.core.ask('snapshot');
+      }
+    } catch (error) {
+      if (opened === this.opened && !error.ended) {
+        this.pause();
+        this.ready = false;
+        tell(`The motion ends here: ${error.message}. Reset, or change an input that starts anew.`, 'bad');
+      }
+    } finally {
+      if (opened === this.opened) this.asked = false;
+    }
+    // Behind time the worker has no rest; otherwise it waits for the next picture.
+    if (this.late && opened === this.opened) this.tick();
+  }
+
+  /** Keeps a change for the next tick; one that starts anew begins at once. */
+  change(input) {
+    if (input.path) this.anew(input);
+    else {
+      this.pending.set(input.key, input);
+      if (!this.playing) this.flush().catch((error) => tell(error.message, 'bad'));
+    }
+  }
+
+  /** Sends the changes of sliders to the worker. */
+  async flush() {
+    if (!this.ready) return;
+    const changed = [...this.pending.values()];
+    this.pending.clear();
+    for (const input of changed) {
+      if (input.move) await this.moveCentre(input);
+      else for (const [what, given] of input.set(input.value)) await this.core.ask(what, given).catch((error) => this.refuse(input, error));
+    }
+  }
+
+  /** Moves a centre on its way; while it is on one the next way waits. */
+  async moveCentre(input) {
+    const way = this.moves.get(input.key) ?? { at: 0, until: -1 };
+    if (this.time < way.until) {
+      this.pending.set(input.key, input);
+      return;
+    }
+    const by = input.value - way.at;
+    if (by === 0) return;
+    const until = await this.core.ask('move', { ...input.move, by, over: input.over }).catch((error) => this.refuse(input, error));
+    if (until) this.moves.set(input.key, { at: input.value, until });
+  }
+
+  /** Takes a slider back that the drive refuses. */
+  refuse(input, error) {
+    if (error.ended) return;
+    input.value = input.start;
+    this.sliders.show(input);
+    input.slider.disabled = true;
+    input.number.disabled = true;
+    tell(`${input.label}: ${error.message}`, 'doubt');
+  }
+
+  /** Starts anew with a value of the scene changed; the curves before stay in grey. */
+  async anew(input) {
+    const before = new Map(this.changes);
+    this.changes.set(input.path, input.value);
+    try {
+      const about = await this.busy('Reading', this.core.ask('read', { ...this.base, changes: [...this.changes] }));
+      await this.start(about, true);
+      tell('Started anew; the curves before stand in grey.');
+    } catch (error) {
+      if (error.ended) return;
+      this.changes = before;
+      const value = before.get(input.path) ?? input.start;
+      await this.goBack(error);
+      input.value = value;
+      this.sliders.show(input);
+    }
+  }
+
+  /** The drive before a start that failed: it moves on. */
+  async goBack(error) {
+    tell(error.message, 'bad');
+    if (this.ready || !this.given) return;
+    const { safe, given, opened } = this;
+    const started = await this.busy('Assembling', this.core.ask('start', given));
+    const back = safe ? await this.core.ask('restore', { bytes: safe.bytes }) : started;
+    if (opened !== this.opened) return;
+    this.ready = true;
+    this.history.cut(back.time);
+    this.take(back);
+    this.play();
+  }
+
+  /** Everything as in the scene, at t = 0. */
+  async reset() {
+    if (!this.base) return;
+    await this.guarded(this.open(this.base));
+  }
+
+  async step() {
+    if (!this.ready) return;
+    this.pause();
+    await this.flush();
+    const steps = Math.max(1, Number(byId('steps').value) || 1);
+    await this.guarded(this.core.ask('step', { steps }).then((answer) => this.take(answer)));
+  }
+
+  /** Keeps the present state as A: one can come back to it, and what has been recorded since then stays in grey. */
+  async keepState() {
+    if (!this.ready) return;
+    this.pause();
+    await this.guarded(this.core.ask('snapshot').then((kept) => {
+      this.kept = { ...kept, inputs: [...this.sliders.inputs.values()].map((it) => [it.key, it.value]), moves: new Map(this.moves) };
+      byId('back-to').disabled = false;
+      tell(`Kept as A at t = ${quantity(kept.time, 's', 4)}. Play on, come back to A, change something: its curves stand in grey beside B.`);
+    }));
+  }
+
+  async goBackToKept() {
+    if (!this.ready || !this.kept) return;
+    this.pause();
+    const { kept } = this;
+    const curves = this.history.copyFrom(kept.time);
+    await this.guarded(this.core.ask('restore', { bytes: kept.bytes.slice() }).then((answer) => {
+      this.history.cut(answer.time);
+      this.scrolls.keep(curves.length > 1 ? curves : null);
+      this.moves = new Map(kept.moves);
+      for (const [key, value] of kept.inputs) {
+        const input = this.sliders.inputs.get(key);
+        if (!input || input.path) continue;
+        input.value = value;
+        this.sliders.show(input);
+      }
+      this.take(answer);
+    }));
+  }
+
+  async guarded(promise) {
+    try {
+      await promise;
+    } catch (error) {
+      if (!error.ended) tell(error.message, 'bad');
+    }
+  }
+
+  setPace(pace) {
+    // The nearest of those that can be chosen.
+    const away = (it) => Math.abs(Math.log(it * pace));
+    const slowness = SPEEDS.reduce((best, it) => (away(it) < away(best) ? it : best));
+    this.pace = 1 / slowness;
+    byId('speed').value = slowness;
+    this.spent = [];
+  }
+
+  /** Shares of real time: how fast it plays, and how fast it could. */
+  tellSpeeds() {
+    const sum = (name) => this.spent.reduce((all, it) => all + it[name], 0);
+    const [wall, done, spent] = [sum('wall'), sum('done'), 1e-3 * sum('spent')];
+    const share = (value) => `${withMinus(+value.toPrecision(2))} ×`;
+    const plays = this.playing && wall > 0 ? done / wall : null;
+    byId('plays').textContent = plays === null ? 'paused' : `plays at ${share(plays)} real time`;
+    const isBehind = plays !== null && this.spent.length > 20 && plays < 0.85 * this.pace;
+    byId('plays').className = isBehind ? 'caution' : '';
+    byId('plays').title = isBehind ? `asked for ${share(this.pace)}: this machine computes no faster` : '';
+    if (spent > 0) this.rate = done / spent;
+    if (spent > 0) byId('computes').textContent = `computes ${share(done / spent)} real time`;
+  }
+
+  /** One picture. */
+  show(now) {
+    requestAnimationFrame(this.loop);
+    if (this.playing) this.tick();
+    if (!this.dirty || !this.view?.window) return;
+    this.dirty = false;
+    const passed = Math.min(0.1, (now - (this.shownAt ?? now)) / 1e3);
+    this.shownAt = now;
+    this.frames += 1;
+    followScales(this.view, passed);
+    this.view.draw();
+    this.scrolls.draw();
+    byId('clock').textContent = clockText(this.time, this.history.every);
+    if (now - (this.toldAt ?? 0) < 250) return;
+    this.toldAt = now;
+    this.tellSpeeds();
+    const [slack, tight] = this.view.tension;
+    tellTension(this.view, [quantity(slack, 'N', 2), quantity(tight, 'N', 2)]);
+    byId('force').hidden = !(this.view.largestForce > 0);
+    tellLengths(this.view);
+    this.ledger.draw(this.history);
+    if (!byId('spectrum').hidden) this.spectrum.draw();
+    if (!byId('energy').hidden && this.ready) this.core.ask('statistics').then(tellStepping, () => {});
+    tellHorizon(this);
+  }
+}
+
+/** A time that shows what changes. */
+function clockText(time, every) {
+  const digits = Math.max(0, Math.min(9, Math.ceil(-Math.log10(every)) - 1));
+  return digits > 4 ? `t = ${(1e3 * time).toFixed(digits - 3)} ms` : `t = ${time.toFixed(digits)} s`;
+}
+
+/** A line above the picture, until the next one or until it is put away. */
+function tell(text, how = '') {
+  byId('message').hidden = !text;
+  byId('message').className = how;
+  byId('message-text').textContent = text;
+}
+
+/** Rollers that can be followed. */
+function fillFollow(film) {
+  const choice = byId('follow');
+  choice.replaceChildren(new Option('nothing', -1));
+  for (let roller = 0; roller < film.rollers; roller++) choice.add(new Option(`roller ${roller}`, roller));
+}

@@ -1,0 +1,86 @@
+// What the picture answers to, and what stands on it.
+
+const byId = (id) => document.getElementById(id);
+
+/** Shares of real time that can be chosen. */
+const SPEEDS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 50000];
+
+/** Offers them in a list. */
+function fillSpeeds(choice) {
+  for (const slowness of SPEEDS) choice.add(new Option(slowness === 1 ? 'real time' : `1 : ${slowness}`, slowness));
+}
+
+/** Scale of tension in the legend: its colours, and its ends as texts. */
+function tellTension(view, [slackest, tightest]) {
+  const c = byId('scale').getContext('2d');
+  const { width, height } = byId('scale');
+  view.colours.scale.forEach((colour, i) => {
+    c.fillStyle = colour;
+    c.fillRect((i * width) / STEPS, 0, width / STEPS + 1, height);
+  });
+  byId('slackest').textContent = slackest;
+  byId('tightest').textContent = tightest;
+}
+
+/** Scale bar and the arrow of the legend, which change as one looks closer. */
+function tellLengths(view) {
+  const length = roundDown(110 / view.window.scale);
+  byId('bar').style.width = `${length * view.window.scale}px`;
+  byId('length').textContent = quantity(length, 'm');
+  if (byId('force').hidden) return;
+  const force = roundDown(view.largestForce);
+  const arrow = (view.longest() * force) / view.largestForce;
+  byId('sample').textContent = quantity(force, 'N');
+  byId('arrow').setAttribute('width', arrow + 2);
+  byId('arrow').firstElementChild.setAttribute('d', `M0 5H${arrow}m-5-2.5l5 2.5l-5 2.5`);
+}
+
+/** Mouse, pen and fingers on the picture; what `player.view` shows may be another drive later. */
+function listenToPicture(canvas, player) {
+  const fingers = new Map();
+  let moved = 0;
+  const place = (event) => [event.offsetX, event.offsetY];
+  canvas.addEventListener('pointerdown', (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    fingers.set(event.pointerId, place(event));
+    moved = 0;
+  });
+  canvas.addEventListener('pointermove', (event) => {
+    const before = fingers.get(event.pointerId);
+    const { view } = player;
+    if (!before || !view) return;
+    const now = place(event);
+    const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
+    moved += Math.hypot(dx, dy);
+    if (fingers.size === 2) {
+      const other = [...fingers].find(([id]) => id !== event.pointerId)[1];
+      const apart = (from) => Math.hypot(from[0] - other[0], from[1] - other[1]);
+      const middle = [0.5 * (now[0] + other[0]), 0.5 * (now[1] + other[1])];
+      view.zoom(apart(now) / Math.max(1, apart(before)), ...middle);
+      view.pan(0.5 * dx, 0.5 * dy);
+    } else if (moved > 4) {
+      canvas.classList.add('dragged');
+      if (view.followed >= 0) player.follow(-1);
+      view.pan(dx, dy);
+    }
+    fingers.set(event.pointerId, now);
+    player.dirty = true;
+  });
+  const lift = (event) => {
+    const { view } = player;
+    const single = view && fingers.size === 1 && moved <= 4 && event.type === 'pointerup';
+    if (single) {
+      const roller = view.rollerAt(...place(event));
+      if (roller >= 0 || view.followed >= 0) player.follow(roller === view.followed ? -1 : roller);
+    }
+    fingers.delete(event.pointerId);
+    canvas.classList.remove('dragged');
+  };
+  canvas.addEventListener('pointerup', lift);
+  canvas.addEventListener('pointercancel', lift);
+  canvas.addEventListener('wheel', (event) => {
+    event.preventDefault();
+    player.view?.zoom(Math.exp(-0.0015 * event.deltaY), ...place(event));
+    player.dirty = true;
+  }, { passive: false });
+}
