@@ -36,7 +36,7 @@ use failure::Failure;
 use terminal::{say, tell};
 
 use commands::{
-    bench, check, describe, design, draw, fmu, lists, measurement, replay, report, resume,
+    bench, check, describe, design, draw, fmu, lab, lists, measurement, replay, report, resume,
     run as run_command, scenes, schemas, shell, sweep,
 };
 
@@ -92,6 +92,7 @@ enum Verb {
     Describe(describe::Arguments),
     Design(design::Arguments),
     Draw(draw::Arguments),
+    Lab(lab::Arguments),
     Fmu(fmu::Arguments),
     Resolve(scenes::Resolve),
     Diff(scenes::Diff),
@@ -223,6 +224,7 @@ fn carry_out(
         Verb::Describe(arguments) => describe::describe(arguments, interrupted),
         Verb::Design(arguments) => design::design(arguments, interrupted),
         Verb::Draw(arguments) => draw::draw(arguments, interrupted),
+        Verb::Lab(arguments) => lab::lab(arguments, interrupted),
         Verb::Fmu(arguments) => fmu::fmu(arguments, interrupted),
         Verb::Resolve(arguments) => scenes::resolve(arguments, interrupted),
         Verb::Diff(arguments) => scenes::diff(arguments, interrupted),
