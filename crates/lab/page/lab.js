@@ -38,7 +38,7 @@ class Lab {
   async start(about, keep) {
     const facts = factsOf(about);
     const every = sampling(facts);
-    const given = { text: about.text, name: about.name, tunable: tunablePlaces(facts), channels: channelsOf(facts), every };
+    const given = { text: about.text, name: about.name, tunable: facts.tunables, channels: channelsOf(facts), every };
     const wasPlaying = this.playing;
     this.pause();
     this.opened += 1;
@@ -65,7 +65,7 @@ class Lab {
     this.spectrum.open(this.history, facts);
     this.ledger.open(channel);
     if (sameCurves) this.scrolls.keep(before);
-    this.sliders.open(liveInputs(facts, started.isTuned), anewInputs(facts));
+    this.sliders.open(liveInputs(facts), anewInputs(facts));
     if (!keep) this.setPace(gentlePace(facts));
     for (const input of this.sliders.changes.filter((it) => !it.path)) this.change(input);
     this.take(started);

@@ -19,7 +19,8 @@ function described(drive) {
     unlaid = error.message;
   }
   return {
-    text: drive.text, name: drive.name, title: drive.title, resolved: JSON.parse(drive.resolved()), layout, unlaid,
+    text: drive.text, name: drive.name, title: drive.title, resolved: JSON.parse(drive.resolved()),
+    tunables: JSON.parse(drive.tunables()), layout, unlaid,
   };
 }
 
@@ -29,17 +30,6 @@ function withDrive(drive, use) {
     return use(drive);
   } finally {
     drive.free();
-  }
-}
-
-/** A drive whose loads can be changed while it moves, where the scene lets them. */
-function tuned(drive, tunable) {
-  if (!tunable.length) return drive;
-  try {
-    return drive.replace('tunable', JSON.stringify(tunable));
-  } catch (error) {
-    if (error instanceof WebAssembly.RuntimeError) throw error;
-    return drive;
   }
 }
 
@@ -92,9 +82,12 @@ const answers = {
   start({ text, name, tunable, channels, every }) {
     if (held) Object.values(held).forEach((it) => it?.free?.());
     held = null;
-    const read = new Drive(text, name);
-    const drive = tuned(read, tunable);
-    if (drive !== read) read.free();
+    let drive = new Drive(text, name);
+    if (tunable.length) {
+      const read = drive;
+      drive = read.replace('tunable', JSON.stringify(tunable));
+      read.free();
+    }
     const moving = new Simulation(drive, 0);
     held = { drive, moving, channels, every, recorder: null, picture: null };
     record();
@@ -110,7 +103,6 @@ const answers = {
       columns: [...recorder.columns()],
       labels: JSON.parse(recorder.labels()),
       statistics: JSON.parse(moving.statistics()),
-      isTuned: drive !== read,
     }, handed];
   },
 
