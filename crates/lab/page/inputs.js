@@ -96,7 +96,7 @@ function anewInputs(facts) {
   for (const [chain, route, it, way, of] of chains) {
     const isClosed = !it.ends && (!it.start || way) && sprockets.length > 1;
     if (isClosed && !way?.sag) add('Chain', `pretension${of}`, `${route}.pretension`, 'N', 1, upTo(way?.pretension, 3, 1000), way?.pretension ?? 0);
-    if (isClosed) add('Chain', `links${of}`, `${chain}.links`, '', 1, [Math.max(8, it.links - 20), it.links + 20], it.links, { whole: true });
+    if (isClosed) add('Chain', `links${of}`, `${chain}.links`, '', 1, [Math.max(8, it.links - 8), it.links + 8], it.links, { whole: true });
     add('Chain', `wear${of}`, `${chain}.elongation`, '%', 100, [0, 0.03], it.elongation ?? 0, { hint: 'by how much every link is longer than new' });
     if (it.damping_ratio !== undefined) add('Chain', `damping ratio of links${of}`, `${chain}.damping_ratio`, '', 1, [0, 0.2], it.damping_ratio);
   }
@@ -106,7 +106,7 @@ function anewInputs(facts) {
     if (Number.isFinite(coefficient)) add('Friction', `coefficient in ${words}`.replace('in teeth', 'on teeth').replace('in guides', 'on guides'), `contact.${place}.friction.coefficient`, '', 1, [0, 0.4], coefficient);
   }
   sprockets.forEach((it, i) => {
-    add('Teeth', it.name, `sprockets[${i}].teeth`, '', 1, [Math.max(5, Math.ceil(0.5 * it.teeth)), 2 * it.teeth], it.teeth, { whole: true });
+    add('Teeth', it.name, `sprockets[${i}].teeth`, '', 1, [Math.max(5, Math.ceil(0.7 * it.teeth)), Math.floor(1.4 * it.teeth)], it.teeth, { whole: true });
   });
   return inputs;
 }

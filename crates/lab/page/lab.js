@@ -28,7 +28,7 @@ class Lab {
   /** Opens a scene: `{ text, name }` or `{ preset }`; tells whether it moves. Mistakes are thrown. */
   async open(asked) {
     const about = await this.busy('Reading', this.core.ask('read', asked));
-    this.base = { text: about.text, name: about.name };
+    this.base = { text: about.text, name: about.name, links: about.resolved.chain?.links };
     this.changes = new Map();
     this.sliders.forget();
     await this.start(about, false);
@@ -245,11 +245,15 @@ class Lab {
   /** Starts anew with a value of the scene changed; the curves before stay in grey. */
   async anew(input) {
     const before = new Map(this.changes);
-    this.changes.set(input.path, input.value);
+    // What a change before has moved to close the loop is sought anew.
+    if (CLOSED_BY.test(input.path)) this.changes.delete('route.adjust');
+    if (input.value === input.start) this.changes.delete(input.path);
+    else this.changes.set(input.path, input.value);
     try {
-      const about = await this.busy('Reading', this.core.ask('read', { ...this.base, changes: [...this.changes] }));
+      const { about, also, note } = await this.busy('Reading', readClosed(this.core, this.base, [...this.changes], input.path));
+      for (const [path, value] of also) this.changes.set(path, value);
       await this.start(about, true);
-      tell('Started anew; the curves before stand in grey.');
+      tell(`Started anew${note ? ` ${note}` : ''}. The curves before stand in grey.`);
     } catch (error) {
       if (error.ended) return;
       this.changes = before;
@@ -262,15 +266,16 @@ class Lab {
 
   /** The drive before a start that failed: it moves on. */
   async goBack(error) {
-    tell(error.message, 'bad');
+    tell(told(error), 'bad');
     if (this.ready || !this.given) return;
     const { safe, given, opened } = this;
     const started = await this.busy('Assembling', this.core.ask('start', given));
     const back = safe ? await this.core.ask('restore', { bytes: safe.bytes }) : started;
     if (opened !== this.opened) return;
-    this.ready = true;
+    Object.assign(this, { ready: true, asked: false });
     this.history.cut(back.time);
     this.take(back);
+    this.playing = false;
     this.play();
   }
 
@@ -374,6 +379,11 @@ class Lab {
     if (!byId('energy').hidden && this.ready) this.core.ask('statistics').then(tellStepping, () => {});
     tellHorizon(this);
   }
+}
+
+/** A mistake in a line: without the excerpts that a scene's text has in the editor. */
+function told({ message, problems }) {
+  return problems?.length ? problems.map((it) => `${it.path ? `${it.path}: ` : ''}${it.message}`).join('\n') : message;
 }
 
 /** A time that shows what changes. */
