@@ -10,7 +10,7 @@ const LINKS_TRIED = 16;
 const CLOSED_BY = /\.(teeth|links|elongation)$/;
 
 /** Whether all chains of a scene that was read close, but for what strain takes up. */
-const closes = ({ layout }) => list(layout).every(({ misfit, pitch }) => Math.abs(misfit ?? 0) < 2e-3 * pitch);
+const closes = ({ layout }) => list(layout).every(({ misfit, pitch }) => Math.abs(misfit ?? 0) < 0.02 * pitch);
 
 /** Reads a scene with changes of which one is at `path`; where its chain does not close then, with another number of links, and a wheel moved. */
 async function readClosed(core, base, changes, path) {

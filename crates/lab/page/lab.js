@@ -9,7 +9,7 @@ const SAFE = 2000;
 class Lab {
   constructor(module) {
     Object.assign(this, {
-      module, playing: false, asked: false, dirty: true, pending: new Map(), opened: 0, spent: [], frames: 0,
+      module, playing: false, asked: false, dirty: true, pending: new Map(), wanted: new Map(), opened: 0, spent: [], frames: 0, works: 0,
       scene: null, film: null, view: null, history: null, safe: null, kept: null, moves: new Map(),
     });
     this.scrolls = new Scrolls(byId('curves'));
@@ -25,11 +25,31 @@ class Lab {
     return new Core(this.module, { ended: (error) => this.recover(error) });
   }
 
+  /** Whether something is read, assembled or gone back to. */
+  get isBusy() {
+    return this.works > 0;
+  }
+
+  /** Does some work, and is busy meanwhile. */
+  async during(work) {
+    this.works += 1;
+    try {
+      return await work();
+    } finally {
+      this.works -= 1;
+    }
+  }
+
+  /** Bytes of the module's memory in the worker that moves the drive. */
+  memory() {
+    return this.core.ask('memory');
+  }
+
   /** Opens a scene: `{ text, name }` or `{ preset }`; tells whether it moves. Mistakes are thrown. */
   async open(asked) {
     const about = await this.busy('Reading', this.core.ask('read', asked));
     this.base = { text: about.text, name: about.name, links: about.resolved.chain?.links };
-    this.changes = new Map();
+    Object.assign(this, { changes: new Map(), closing: [] });
     this.sliders.forget();
     await this.start(about, false);
   }
@@ -108,7 +128,11 @@ class Lab {
   }
 
   /** A new worker in place of one that has ended; it goes on from the last snapshot. */
-  async recover(error) {
+  recover(error) {
+    return this.during(() => this.goOn(error));
+  }
+
+  async goOn(error) {
     this.core = this.startCore();
     this.asked = false;
     this.opened += 1;
@@ -201,8 +225,10 @@ class Lab {
 
   /** Keeps a change for the next tick; one that starts anew begins at once. */
   change(input) {
-    if (input.path) this.anew(input);
-    else {
+    if (input.path) {
+      this.wanted.set(input.path, input.value);
+      this.during(() => this.renew());
+    } else {
       this.pending.set(input.key, input);
       if (!this.playing) this.flush().catch((error) => tell(error.message, 'bad'));
     }
@@ -242,25 +268,43 @@ class Lab {
     tell(`${input.label}: ${error.message}`, 'doubt');
   }
 
-  /** Starts anew with a value of the scene changed; the curves before stay in grey. */
-  async anew(input) {
-    const before = new Map(this.changes);
-    // What a change before has moved to close the loop is sought anew.
-    if (CLOSED_BY.test(input.path)) this.changes.delete('route.adjust');
-    if (input.value === input.start) this.changes.delete(input.path);
-    else this.changes.set(input.path, input.value);
+  /** Starts anew with the values of the scene that have been changed, one start after the other. */
+  async renew() {
+    if (this.renewing) return;
+    this.renewing = true;
+    while (this.wanted.size) {
+      const wanted = [...this.wanted];
+      this.wanted.clear();
+      await this.anew(wanted);
+    }
+    this.renewing = false;
+  }
+
+  /** Starts anew with values of the scene, `[path, value]`; the curves before stay in grey. */
+  async anew(wanted) {
+    const [before, closing] = [new Map(this.changes), this.closing];
+    for (const [path, value] of wanted) {
+      // What closed the loop after a change before is sought anew.
+      if (CLOSED_BY.test(path)) this.closing = [];
+      if (value === this.sliders.inputs.get(path)?.start) this.changes.delete(path);
+      else this.changes.set(path, value);
+    }
+    const [path] = wanted.find((it) => CLOSED_BY.test(it[0])) ?? wanted[0];
     try {
-      const { about, also, note } = await this.busy('Reading', readClosed(this.core, this.base, [...this.changes], input.path));
-      for (const [path, value] of also) this.changes.set(path, value);
+      const { about, also, note } = await this.busy('Reading', readClosed(this.core, this.base, [...this.changes, ...this.closing], path));
+      this.closing = [...this.closing, ...also];
       await this.start(about, true);
       tell(`Started anew${note ? ` ${note}` : ''}. The curves before stand in grey.`);
     } catch (error) {
       if (error.ended) return;
-      this.changes = before;
-      const value = before.get(input.path) ?? input.start;
+      Object.assign(this, { changes: before, closing });
       await this.goBack(error);
-      input.value = value;
-      this.sliders.show(input);
+      for (const [place] of wanted) {
+        const input = this.sliders.inputs.get(place);
+        if (!input) continue;
+        input.value = before.get(place) ?? input.start;
+        this.sliders.show(input);
+      }
     }
   }
 
@@ -282,7 +326,7 @@ class Lab {
   /** Everything as in the scene, at t = 0. */
   async reset() {
     if (!this.base) return;
-    await this.guarded(this.open(this.base));
+    await this.guarded(this.during(() => this.open(this.base)));
   }
 
   async step() {
@@ -297,7 +341,7 @@ class Lab {
   async keepState() {
     if (!this.ready) return;
     this.pause();
-    await this.guarded(this.core.ask('snapshot').then((kept) => {
+    await this.guarded(this.core.ask('snapshot', { anew: true }).then((kept) => {
       this.kept = { ...kept, inputs: [...this.sliders.inputs.values()].map((it) => [it.key, it.value]), moves: new Map(this.moves) };
       byId('back-to').disabled = false;
       tell(`Kept as A at t = ${quantity(kept.time, 's', 4)}. Play on, come back to A, change something: its curves stand in grey beside B.`);

@@ -149,6 +149,8 @@ class OwnDrive {
   /** Asks the core how the chain lies; of several changes only the last is asked about. */
   async lay() {
     this.draw();
+    // What closed the loop before the change may not close it now.
+    for (const button of byId('own-fits').children) button.disabled = true;
     this.wanted = true;
     if (this.laying) return;
     this.laying = true;
@@ -195,8 +197,9 @@ class OwnDrive {
     return this.sorted[0] ?? null;
   }
 
+  /** Whether the loop closes, but for what rounding the places leaves. */
   get isClosed() {
-    return Boolean(this.plan.links && this.layout && Math.abs(this.layout.misfit) < 1e-6 * this.plan.chain.pitch);
+    return Boolean(this.plan.links && this.layout && Math.abs(this.layout.misfit) < 1e-4 * this.plan.chain.pitch);
   }
 
   tellLayout() {

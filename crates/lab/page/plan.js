@@ -149,7 +149,7 @@ class Plan {
   /** The text of the scene; a mover goes wherever the links close. */
   text(mover = null) {
     const { chain, order } = this;
-    const millimetres = (value) => `"${+(1e3 * value).toPrecision(12)} mm"`;
+    const millimetres = (value) => `"${+(1e3 * value).toFixed(4)} mm"`;
     const lines = ['# Laid out in the lab. What is called assumed there nobody has measured: put in what you know.', '', 'title = "A drive of one\'s own"', '',
       '[chain]', `type = ${JSON.stringify(chain.name)}`];
     if (this.links && !mover) lines.push(`links = ${this.links}`);

@@ -144,13 +144,15 @@ async function start() {
   lab.onStarted = () => seekHorizon(lab);
   /** Opens a scene; the drive before goes on where it cannot be. */
   const open = async (asked) => {
-    try {
-      await lab.open(asked);
-      tell('');
-    } catch (error) {
-      if (!error.ended) await lab.goBack(error);
-      throw error;
-    }
+    await lab.during(async () => {
+      try {
+        await lab.open(asked);
+        tell('');
+      } catch (error) {
+        if (!error.ended) await lab.goBack(error);
+        throw error;
+      }
+    });
     byId('preset').value = asked.preset ?? '';
   };
   lab.editor = new Editor(lab, open);
@@ -177,13 +179,17 @@ async function start() {
 
   /** The scene of the page or of its address; mistakes in it are shown where they stand. */
   const openGiven = async () => {
-    let given = null;
+    let [given, refused] = [null, ''];
     try {
       given = await sceneOfPage();
     } catch (error) {
-      tell(`The scene in the address cannot be read: ${error.message}`, 'bad');
+      refused = `The scene in the address cannot be read: ${error.message}.`;
     }
-    if (!given) return openPreset(FIRST);
+    if (!given) {
+      await openPreset(FIRST);
+      if (refused) tell(refused, 'bad');
+      return null;
+    }
     return open(given).catch((error) => lab.editor.show(given, error.problems ?? [{ message: error.message }]));
   };
   window.addEventListener('hashchange', () => {
@@ -192,8 +198,10 @@ async function start() {
   await openGiven();
   byId('wait').hidden = true;
   byId('wait').style.display = 'none';
+  const openedAt = performance.now();
   window.lab = {
     lab,
+    openedAt,
     get time() { return lab.time; },
     get playing() { return lab.playing; },
     get ready() { return lab.ready; },

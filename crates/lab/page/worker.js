@@ -5,6 +5,9 @@ const { Drive, Simulation, Recorder, Picture, Snapshot, RunReport } = wasm_bindg
 /** What is in motion; nothing before `start`. */
 let held = null;
 
+/** Memory of the module. */
+let memory = null;
+
 /** Frees an object of the module that may not be there. */
 const free = (it) => it?.free();
 
@@ -66,16 +69,9 @@ const answers = {
 
   /** A scene by its text or the name of a preset, with values replaced. */
   read({ text, preset, name, changes = [] }) {
-    let drive = preset ? Drive.preset(preset) : new Drive(text, name);
-    for (const [path, value] of changes) {
-      const before = drive;
-      try {
-        drive = before.replace(path, JSON.stringify(value));
-      } finally {
-        before.free();
-      }
-    }
-    return [withDrive(drive, described)];
+    const drive = preset ? Drive.preset(preset) : new Drive(text, name);
+    if (!changes.length) return [withDrive(drive, described)];
+    return [withDrive(drive, () => withDrive(drive.replaceAll(JSON.stringify(changes)), described))];
   },
 
   /** Sets a drive in motion. */
@@ -142,9 +138,12 @@ const answers = {
     return [begin + over];
   },
 
+  memory: () => [memory.buffer.byteLength],
   statistics: () => [JSON.parse(held.moving.statistics())],
 
-  snapshot() {
+  /** The state; `anew` begins samples there, so that those of a motion that comes back to it stand at the same times. */
+  snapshot({ anew }) {
+    if (anew) record();
     const snapshot = held.moving.snapshot();
     const bytes = snapshot.toBytes();
     snapshot.free();
@@ -180,7 +179,7 @@ const answers = {
 
 onmessage = ({ data: { module, id, what, given } }) => {
   if (module) {
-    wasm_bindgen.initSync({ module });
+    ({ memory } = wasm_bindgen.initSync({ module }));
     postMessage({ ready: true });
     return;
   }
