@@ -84,7 +84,7 @@ class Lab {
     this.scrolls.open(this.history, facts);
     this.spectrum.open(this.history, facts);
     this.ledger.open(channel);
-    if (sameCurves) this.scrolls.keep(before);
+    if (sameCurves) this.scrolls.keep(before, 'before the start anew');
     this.sliders.open(liveInputs(facts), anewInputs(facts));
     if (!keep) this.setPace(gentlePace(facts));
     for (const input of this.sliders.changes.filter((it) => !it.path)) this.change(input);
@@ -92,7 +92,8 @@ class Lab {
     this.scrolls.resize();
     this.spectrum.draw();
     tellStepping(started.statistics);
-    byId('title').textContent = about.title || about.name || 'Chain drive';
+    const changed = keep && this.changes.size ? ' (changed)' : '';
+    byId('title').textContent = `${about.title || about.name || 'Chain drive'}${changed}`;
     document.title = `${about.title || 'Chain drive'} · lab`;
     byId('tension').hidden = false;
     byId('back-to').disabled = true;
@@ -355,7 +356,7 @@ class Lab {
     const curves = this.history.copyFrom(kept.time);
     await this.guarded(this.core.ask('restore', { bytes: kept.bytes.slice() }).then((answer) => {
       this.history.cut(answer.time);
-      this.scrolls.keep(curves.length > 1 ? curves : null);
+      this.scrolls.keep(curves.length > 1 ? curves : null, `A, from t = ${quantity(kept.time, 's', 4)} on`);
       this.moves = new Map(kept.moves);
       for (const [key, value] of kept.inputs) {
         const input = this.sliders.inputs.get(key);
@@ -441,7 +442,13 @@ function tell(text, how = '') {
   byId('message').hidden = !text;
   byId('message').className = how;
   byId('message-text').textContent = text;
+  clearTimeout(tell.waiting);
+  // What is only told goes by itself; mistakes stay.
+  if (text && !how) tell.waiting = setTimeout(() => tell(''), READING);
 }
+
+/** Milliseconds in which a line is read. */
+const READING = 9000;
 
 /** Rollers that can be followed. */
 function fillFollow(film) {

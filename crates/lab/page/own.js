@@ -60,7 +60,7 @@ class OwnDrive {
   /** A field of a row, `scale` times what is kept. */
   field(it, key, label, { scale = 1, least, most, whole, text, after } = {}) {
     const input = document.createElement('input');
-    const shown = () => (text ? it[key] : +(scale * it[key]).toPrecision(7));
+    const shown = () => (text ? it[key] : +(scale * it[key]).toFixed(2));
     Object.assign(input, text ? { type: 'text', maxLength: 40 } : { type: 'number', step: whole ? 1 : 'any' });
     input.value = shown();
     input.setAttribute('aria-label', `${label} of ${it.name}`);
@@ -102,6 +102,7 @@ class OwnDrive {
         return;
       }
       Object.assign(wheel, { role: role.value, value: role.value === 'drives' ? 300 : 0, isChosen: false });
+      if (['idler', 'outside'].includes(role.value)) this.plan.place(wheel);
       this.plan.load();
       this.change();
     };
