@@ -423,7 +423,7 @@ def test_memory_stays(page):
     for wait in (10, 50):
         page.wait_for_timeout(1000 * wait)
         session.send("HeapProfiler.collectGarbage")
-        page_used = page.evaluate("performance.memory.usedJSHeapSize")
+        page_used = session.send("Runtime.getHeapUsage")["usedSize"]
         sizes.append((page_used, page.evaluate("lab.lab.memory()")))
     (page_before, module_before), (page_after, module_after) = sizes
     print(f"page {page_before} and {page_after} B, module {module_before} and {module_after} B")
