@@ -162,6 +162,7 @@ impl SimulationError {
 fn nothing(setting: &str) -> &'static str {
     match setting {
         "events" => "no contacts are",
+        "kind" => "nothing that can be set is",
         _ => "no method is",
     }
 }

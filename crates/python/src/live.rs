@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PySlice};
 
 use crate::drive::Drive;
-use crate::errors::{IntoException, OrRaise, broken, in_another_thread, parameter};
+use crate::errors::{IntoException, OrRaise, broken, in_another_thread};
 use crate::run::{Setting, merged};
 use crate::signals::{Interpreter, watched};
 
@@ -55,27 +55,6 @@ impl Snapshot {
     fn __getnewargs__<'py>(&self, py: Python<'py>) -> (Bound<'py, PyBytes>,) {
         (self.__bytes__(py),)
     }
-}
-
-/// What can be set, by its name in Python.
-fn control(kind: &str, name: String) -> PyResult<Control> {
-    Ok(match kind {
-        "torque" => Control::Torque(name),
-        "speed" => Control::Speed(name),
-        "angle" => Control::Angle(name),
-        "force" => Control::Force(name),
-        "force_x" => Control::ForceX(name),
-        "force_y" => Control::ForceY(name),
-        "centre_x" => Control::CentreX(name),
-        "centre_y" => Control::CentreY(name),
-        "parameter" => Control::Parameter(name),
-        _ => {
-            let known =
-                "torque, speed, angle, force, force_x, force_y, centre_x, centre_y, parameter";
-            let message = format!("`{kind}` cannot be set; there are {known}");
-            return Err(parameter(message, "kind", &format!("one of {known}")));
-        }
-    })
 }
 
 /// The value, also after a panic elsewhere: arrays are filled anew.
@@ -275,11 +254,11 @@ impl Simulation {
     fn set(
         &self,
         kind: &str,
-        name: String,
+        name: &str,
         course: (f64, f64, f64),
         at: Option<f64>,
     ) -> PyResult<()> {
-        let control = control(kind, name)?;
+        let control = Control::named(kind, name).or_raise()?;
         let (to, over, rate) = course;
         let mut moving = self.moving()?;
         let at = at.unwrap_or_else(|| moving.read_at());

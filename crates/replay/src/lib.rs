@@ -9,9 +9,11 @@
 
 mod animation;
 mod page;
+mod picture;
 mod recorded;
 mod stream;
 
 pub use animation::{Animation, Body, Chain, Contact, Curve, Frames, Outline, PageTexts};
 pub use page::{PICTURE, STYLE, page};
+pub use picture::Picture;
 pub use recorded::{AnimationError, MOST_FRAMES, Selection, film};

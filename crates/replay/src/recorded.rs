@@ -1,22 +1,18 @@
 //! A recorded run as a film.
 
-use std::f64::consts::TAU;
-
 use chaindrive::record::{LoggedContact, RecordedChannel, RecordedRun};
 use chaindrive::scene::SceneError;
 use chaindrive::{
-    Figure, Instant, MissingChannel, Placement, Scene, SimulationError, one_line, patiently, plain,
+    BodyKind, Figure, Instant, MissingChannel, Scene, SimulationError, one_line, patiently, plain,
 };
-use chaindrive_geometry::{ArcSpline, GeometryError, Point};
-use chaindrive_mechanics::{AssemblyError, BodyKind};
+use chaindrive_geometry::GeometryError;
+use chaindrive_mechanics::AssemblyError;
 
-use crate::animation::{Animation, Body, Chain, Contact, Curve, Frames, Outline, PageTexts};
+use crate::animation::{Animation, Contact, Curve, Frames, PageTexts};
+use crate::picture::Picture;
 
 /// Frames of a film unless somebody asks for another number: the start, and 5000 more.
 pub const MOST_FRAMES: usize = 5001;
-
-/// How far chords may stand off outlines, in pitches: a tenth of a pixel where a pitch fills the window.
-const CHORDS: f64 = 1e-4;
 
 /// The frames and plots that a film is to have.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -142,16 +138,14 @@ pub fn film(
     if recorded.time.is_empty() {
         return Err(AnimationError::NoSamples);
     }
-    let pitches = figure.chains.iter().map(|chain| chain.pitch);
-    let chords = CHORDS * pitches.fold(f64::INFINITY, f64::min);
-    let bodies = figure.bodies.iter().map(|body| shown_body(body, chords));
+    let mut picture = Picture::of(figure)?;
     Ok(Animation {
         about: about(recorded),
-        bodies: bodies.collect::<Result<_, _>>()?,
-        chains: figure.chains.iter().map(shown_chain).collect(),
-        frames: frames(recorded, &figure)?,
+        frames: frames(recorded, &mut picture)?,
         curves: curves(recorded, selection)?,
-        contacts: contacts(recorded, &figure),
+        contacts: contacts(recorded, picture.figure()),
+        bodies: picture.bodies,
+        chains: picture.chains,
     })
 }
 
@@ -175,62 +169,17 @@ fn about(recorded: &RecordedRun) -> PageTexts {
     }
 }
 
-fn shown_body(body: &chaindrive::Body, chords: f64) -> Result<Body, GeometryError> {
-    let line = |curve: &ArcSpline, is_closed: bool| {
-        let points = curve.polyline(chords)?;
-        let points = points.iter().map(|point| [point.x, point.y]).collect();
-        Ok(Outline { points, is_closed })
-    };
-    let is_sprocket = matches!(body.kind, BodyKind::Sprocket { .. });
-    let mut outlines = Vec::new();
-    if !body.backing.is_empty() {
-        outlines.push(Outline {
-            points: body
-                .backing
-                .iter()
-                .map(|point| [point.x, point.y])
-                .collect(),
-            is_closed: true,
-        });
-    }
-    for outline in &body.outlines {
-        outlines.push(line(outline, is_sprocket)?);
-    }
-    Ok(Body {
-        name: body.name.clone(),
-        kind: body.kind.name().to_owned(),
-        outlines,
-    })
-}
-
-fn shown_chain(chain: &chaindrive::FigureChain) -> Chain {
-    Chain {
-        name: chain.name.clone().unwrap_or_default(),
-        rollers: chain.rollers,
-        links: chain.links,
-        pitch: chain.pitch,
-        roller_radius: 0.5 * chain.roller_diameter,
-        plate_height: chain.plate_height,
-        is_waisted: chain.plates == chaindrive::PlateShape::Waisted,
-        is_outer_first: chain.outer_first,
-    }
-}
-
-fn frames(recorded: &RecordedRun, figure: &Figure) -> Result<Frames, AnimationError> {
+fn frames(recorded: &RecordedRun, picture: &mut Picture) -> Result<Frames, AnimationError> {
     let values = |name: &str| recorded.channel(name).map(|channel| channel.values.clone());
-    let mut placements = Vec::new();
-    let mut directions = Directions::new(figure);
+    let has_forces = recorded.channel("contact_force").is_some();
+    let (mut placements, mut directions) = (Vec::new(), Vec::new());
     for index in 0..recorded.time.len() {
         let sample = |name: &str| recorded.channel(name).and_then(|it| it.sample(index));
         let at = Instant::recorded(recorded.time[index], sample);
-        let pose = figure.pose(&at)?;
-        if let Some(forces) = sample("contact_force") {
-            directions.push(figure, &pose, forces);
-        }
-        let placed = pose.placements.iter();
-        placements.extend(placed.flat_map(|it| [it.x, it.y, it.angle]));
+        picture.move_to(&at, sample("contact_force"))?;
+        placements.extend_from_slice(picture.placements());
+        directions.extend_from_slice(picture.directions());
     }
-    let has_forces = recorded.channel("contact_force").is_some();
     Ok(Frames {
         times: recorded.time.clone(),
         placements,
@@ -238,77 +187,8 @@ fn frames(recorded: &RecordedRun, figure: &Figure) -> Result<Frames, AnimationEr
         roller_y: values("roller_y").unwrap_or_default(),
         link_tension: values("link_tension"),
         contact_force: values("contact_force"),
-        contact_direction: has_forces.then_some(directions.all),
+        contact_direction: has_forces.then_some(directions),
     })
-}
-
-/// Directions in which teeth press on rollers: normals of the teeth where they are nearest.
-struct Directions {
-    /// Of every sample so far, (time, roller).
-    all: Vec<f64>,
-    /// Of the last sample.
-    last: Vec<f64>,
-}
-
-impl Directions {
-    fn new(figure: &Figure) -> Self {
-        let rollers = figure.chains.iter().map(|chain| chain.rollers).sum();
-        Self {
-            all: Vec::new(),
-            last: vec![0.0; rollers],
-        }
-    }
-
-    fn push(&mut self, figure: &Figure, pose: &chaindrive::Pose, forces: &[f64]) {
-        let mut roller = 0;
-        for (chain, places) in figure.chains.iter().zip(&pose.rollers) {
-            for &place in places {
-                if forces.get(roller).is_some_and(|force| *force > 0.0) {
-                    let nearest = chain.sprockets.iter().filter_map(|&sprocket| {
-                        let reach = chain.roller_diameter;
-                        normal(
-                            &figure.bodies[sprocket],
-                            &pose.placements[sprocket],
-                            place,
-                            reach,
-                        )
-                    });
-                    let found = nearest.min_by(|a, b| a.0.total_cmp(&b.0));
-                    let last = &mut self.last[roller];
-                    if let Some((_, direction)) = found {
-                        // The turn that is nearest to the last direction, so that few numbers change.
-                        *last += (direction - *last + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU;
-                    }
-                }
-                roller += 1;
-            }
-        }
-        self.all.extend_from_slice(&self.last);
-    }
-}
-
-/// Distance of the teeth of a sprocket, and the direction of their normal there.
-fn normal(
-    body: &chaindrive::Body,
-    placement: &Placement,
-    place: Point,
-    reach: f64,
-) -> Option<(f64, f64)> {
-    let BodyKind::Sprocket { tip_radius, .. } = body.kind else {
-        return None;
-    };
-    let away = place - Point::new(placement.x, placement.y);
-    if away.norm() > tip_radius + reach {
-        return None;
-    }
-    let (sin, cos) = placement.angle.sin_cos();
-    let own = Point::new(cos * away.x + sin * away.y, cos * away.y - sin * away.x);
-    let feet = body.outlines.iter().filter_map(|it| it.nearest(own, reach));
-    let foot = feet.min_by(|a, b| a.distance.total_cmp(&b.distance))?;
-    Some((
-        foot.distance,
-        foot.normal.y.atan2(foot.normal.x) + placement.angle,
-    ))
 }
 
 fn curves(recorded: &RecordedRun, selection: &Selection) -> Result<Vec<Curve>, AnimationError> {

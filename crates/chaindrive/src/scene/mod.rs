@@ -93,7 +93,7 @@ pub use text_span::TextSpan;
 pub use accuracy::{ACCURACY, Quantity};
 pub(crate) use chaindrive_quantities::is_number;
 pub use chaindrive_quantities::{UnitInSi, read_length, read_time, read_unit};
-pub use resolve::chain_named;
+pub use resolve::{chain_named, tunable_places};
 pub use run_in::RunIn;
 use schema::{Contact, SceneText};
 pub(crate) use schema::{EVERY, STEPPING_KEYS, TOLERANCE, UNTIL};

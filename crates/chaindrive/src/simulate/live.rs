@@ -257,6 +257,35 @@ impl Moving {
 const CARRIERS: &str = "tensioners.";
 
 impl Control {
+    /// Every kind by its name in programs, and what makes it of a name.
+    const KINDS: [(&str, fn(String) -> Self); 9] = [
+        ("torque", Self::Torque),
+        ("speed", Self::Speed),
+        ("angle", Self::Angle),
+        ("force", Self::Force),
+        ("force_x", Self::ForceX),
+        ("force_y", Self::ForceY),
+        ("centre_x", Self::CentreX),
+        ("centre_y", Self::CentreY),
+        ("parameter", Self::Parameter),
+    ];
+
+    /// The control of a kind, as programs call it: `torque`, `speed`, `angle`, `force`, `force_x`, `force_y`, `centre_x`, `centre_y` or
+    /// `parameter`.
+    ///
+    /// # Errors
+    /// [`SimulationError::UnknownName`]: there is no such kind.
+    pub fn named(kind: &str, name: &str) -> Result<Self, SimulationError> {
+        let known = || Self::KINDS.map(|(kind, _)| kind).join(", ");
+        let found = Self::KINDS.iter().find(|(known, _)| *known == kind);
+        let (_, control) = found.ok_or_else(|| SimulationError::UnknownName {
+            setting: "kind",
+            name: kind.to_owned(),
+            known: known(),
+        })?;
+        Ok(control(name.to_owned()))
+    }
+
     /// The input of the drive.
     fn input(&self, assembled: &Assembled) -> Result<Input, SimulationError> {
         let system = &assembled.system;

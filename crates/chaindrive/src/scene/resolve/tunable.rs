@@ -33,6 +33,11 @@ pub(super) fn resolve(
     found
 }
 
+/// Places of all that a scene of these parts may list under `tunable`.
+pub fn tunable_places(parts: &Parts) -> Vec<String> {
+    all(parts).into_iter().map(|it| it.place).collect()
+}
+
 /// All loads and springs of these parts.
 fn all(parts: &Parts) -> Vec<Tunable> {
     let mut found = Vec::new();
