@@ -419,6 +419,7 @@ class Lab {
     tellTension(this.view, [quantity(slack, 'N', 2), quantity(tight, 'N', 2)]);
     byId('force').hidden = !(this.view.largestForce > 0);
     tellLengths(this.view);
+    tellRoller(this.view, this.view.followed);
     this.ledger.draw(this.history);
     if (!byId('spectrum').hidden) this.spectrum.draw();
     if (!byId('energy').hidden && this.ready) this.core.ask('statistics').then(tellStepping, () => {});

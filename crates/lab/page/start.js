@@ -24,7 +24,7 @@ function listenToLab(lab) {
     follow(roller) {
       lab.view?.follow(roller);
       byId('follow').value = roller;
-      lab.dirty = true;
+      Object.assign(lab, { dirty: true, toldAt: 0 });
     },
   };
   listenToPicture(byId('picture'), picture);
