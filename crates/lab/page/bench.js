@@ -27,8 +27,8 @@ class Errand {
 /** Finds how long waveforms of a drive can be believed, following it for some time [s]. */
 async function findHorizon(lab, follow) {
   const { opened, given } = lab;
-  lab.horizon = { follow, busy: true };
-  lab.scrolls.horizon = null;
+  // What was found before stands until more is known.
+  if (!lab.horizon?.sentence) lab.horizon = { follow, busy: true };
   tellHorizon(lab);
   try {
     const found = await lab.horizonErrand.run('horizon', { text: given.text, name: given.name, follow });
@@ -42,6 +42,8 @@ async function findHorizon(lab, follow) {
   }
   lab.dirty = true;
   tellHorizon(lab);
+  const most = usualFollow(lab.facts);
+  if (lab.horizon.time === null && !lab.horizon.failed && follow < most) await findHorizon(lab, Math.min(most, 4 * follow));
 }
 
 /** Milliseconds of play before the horizon is sought: how fast the machine computes is known then. */
@@ -50,10 +52,15 @@ const BEFORE_HORIZON = 1500;
 /** Wall time that the twins of a drive may take at first [s]. */
 const PATIENCE = 4;
 
-/** Time for which the twins are followed at first [s]: 40 pitches, or what comes within the patience. */
+/** Time for which the twins are followed without being asked [s]: 40 pitches. */
+function usualFollow({ scene, mesh }) {
+  const until = scene.run?.until ?? 1;
+  return mesh ? Math.min(until, 40 * mesh) : 0.25 * until;
+}
+
+/** The same at first [s]: what comes within the patience. */
 function firstFollow({ facts, rate }) {
-  const until = facts.scene.run?.until ?? 1;
-  const most = facts.mesh ? Math.min(until, 40 * facts.mesh) : 0.25 * until;
+  const most = usualFollow(facts);
   return Math.min(most, Math.max(0.1 * most, 0.5 * PATIENCE * (rate ?? Infinity)));
 }
 
@@ -62,6 +69,7 @@ function seekHorizon(lab) {
   const { opened } = lab;
   lab.horizonErrand.stop();
   Object.assign(lab, { horizon: null, rate: null });
+  lab.scrolls.horizon = null;
   byId('horizon').textContent = '';
   setTimeout(() => {
     if (opened === lab.opened && lab.ready) findHorizon(lab, firstFollow(lab));
@@ -85,7 +93,8 @@ function tellHorizon(lab) {
   byId('further').hidden = false;
   byId('horizon-sentence').textContent = `${horizon.sentence[0].toUpperCase()}${horizon.sentence.slice(1)}.`;
   if (horizon.time === null) {
-    text.textContent = `Waveforms can be believed for ${quantity(horizon.follow, 's')} at least.`;
+    text.textContent = time < horizon.follow ? `Waveforms can be believed for ${quantity(horizon.follow, 's')} at least.`
+      : `Waveforms can be believed for ${quantity(horizon.follow, 's')} at least; nobody has looked beyond.`;
   } else if (time < horizon.time) {
     text.textContent = `Waveforms can be believed for ${quantity(horizon.time, 's')}; after that means and orders only.`;
   } else {

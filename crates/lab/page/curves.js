@@ -14,6 +14,7 @@ class Scrolls {
   /** Plots for the curves of another drive; choices of the reader stay where curves are called alike. */
   open(history, facts) {
     Object.assign(this, { history, facts, kept: null, shift: 0, horizon: null });
+    this.tellKept();
     const hidden = this.hidden ?? new Map();
     for (const curve of history.curves) {
       const key = `${curve.plot} ${curve.label}`;
@@ -107,9 +108,15 @@ class Scrolls {
   }
 
   /** Keeps curves as those of A; they stay at their own times as long as these are shown. */
-  keep(history) {
-    this.kept = history;
-    this.shift = 0;
+  keep(history, what) {
+    Object.assign(this, { kept: history, shift: 0, what });
+    this.tellKept();
+  }
+
+  tellKept() {
+    byId('kept').hidden = !this.kept;
+    const pitches = this.facts.mesh ? Math.round(this.shift / this.facts.mesh) : 0;
+    byId('kept-text').textContent = `In grey: ${this.what}${pitches ? `, ${pitches} pitches before` : ''}.`;
   }
 
   /** Lays A's last curves under the present ones where its own times have gone by: by whole pitches, so that teeth stand over teeth. */
@@ -117,7 +124,9 @@ class Scrolls {
     const { kept, facts } = this;
     if (!kept?.length || !facts.mesh) return;
     const isAway = kept.end + this.shift < start + 0.25 * (end - start);
-    if (isAway) this.shift = Math.ceil((end - kept.end) / facts.mesh) * facts.mesh;
+    if (!isAway) return;
+    this.shift = Math.ceil((end - kept.end) / facts.mesh) * facts.mesh;
+    this.tellKept();
   }
 
   draw() {

@@ -11,6 +11,7 @@ class Editor {
     Object.assign(this, { lab, open, dialog: byId('editor'), text: byId('editor-text'), marks: byId('editor-marks'), list: byId('editor-problems') });
     this.text.addEventListener('input', () => {
       clearTimeout(this.waiting);
+      this.number();
       this.waiting = setTimeout(() => this.check(), 350);
     });
     this.text.addEventListener('scroll', () => this.scroll());
@@ -83,7 +84,16 @@ class Editor {
       }
       return mark;
     }));
+    this.number();
     this.scroll();
+  }
+
+  /** Numbers of the lines. */
+  number() {
+    const lines = this.text.value.split('\n').length;
+    if (lines === this.lines) return;
+    this.lines = lines;
+    byId('editor-lines').textContent = Array.from({ length: lines }, (_, i) => i + 1).join('\n');
   }
 
   item({ path, message, hint, line, columns, excerpt }) {
@@ -119,6 +129,7 @@ class Editor {
   }
 
   scroll() {
+    byId('editor-lines').style.transform = `translateY(${-this.text.scrollTop}px)`;
     this.marks.style.transform = `translate(${-this.text.scrollLeft}px, ${-this.text.scrollTop}px)`;
   }
 }

@@ -39,7 +39,7 @@ function shaftsOf(scene) {
 }
 
 /** Facts of a scene that was read: with every default written out, and how its chains lie. */
-function factsOf({ resolved: scene, layout }) {
+function factsOf({ resolved: scene, layout, tunables }) {
   const shafts = shaftsOf(scene);
   const sprockets = list(scene.sprockets).map((it) => {
     const shaft = shafts.find((on) => on.carries.includes(it.name));
@@ -51,7 +51,7 @@ function factsOf({ resolved: scene, layout }) {
   const speed = driver ? meanSpeed(driver.shaft.motion) ?? driver.shaft.speed : 0;
   // A pitch passes in T = 2π/(z |ω|).
   const mesh = driver ? (2 * Math.PI) / (driver.teeth * Math.abs(speed)) : null;
-  return { scene, layout: list(layout), shafts, sprockets, chains, driver, mesh, pitch: chains[0]?.pitch ?? 0.01 };
+  return { scene, tunables, layout: list(layout), shafts, sprockets, chains, driver, mesh, pitch: chains[0]?.pitch ?? 0.01 };
 }
 
 /** Samples taken while a pitch passes. */
@@ -66,14 +66,6 @@ function sampling(facts) {
 /** Share of real time at which a pitch takes three tenths of a second, and what has no pitch a few. */
 function gentlePace(facts) {
   return facts.mesh ? Math.min(1, facts.mesh / 0.3) : Math.min(1, (facts.scene.run?.until ?? 1) / 5);
-}
-
-/** Places of loads and springs that can be changed while the drive moves, but for what is moved by a motion. */
-function tunablePlaces({ scene, shafts }) {
-  const loads = shafts.filter((it) => !it.motion && list(it.load).length).map((it) => `${it.place}.load`);
-  const springs = list(scene.tensioners).filter((it) => ['spring', 'torsion-spring'].includes(it.push?.kind));
-  const places = springs.flatMap(({ name }) => ['preload', 'stiffness'].map((key) => `tensioners.${name}.push.${key}`));
-  return [...new Set([...list(scene.tunable), ...loads, ...places])];
 }
 
 /** Channels that the curves are made of. */

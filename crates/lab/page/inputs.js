@@ -4,8 +4,8 @@
 const upTo = (value, times, otherwise) => (value < 0 ? [times * value, 0] : [0, value > 0 ? times * value : otherwise]);
 
 /** Inputs that act at once: `{ key, label, unit, factor, range, start, set(value) → questions for the worker }`, values in SI. */
-function liveInputs(facts, isTuned) {
-  const { scene, shafts, sprockets, mesh } = facts;
+function liveInputs(facts) {
+  const { scene, shafts, sprockets, mesh, tunables } = facts;
   const inputs = [];
   // Along a ramp over two pitches: a jump would strike the chain.
   const over = 2 * (mesh ?? 0);
@@ -19,15 +19,13 @@ function liveInputs(facts, isTuned) {
       set: (value) => [['set', { kind: 'speed', name: shaft.name, value: Math.sign(speed) * value, over }]],
     });
   }
-  if (isTuned) {
-    for (const shaft of shafts.filter((it) => !it.motion && list(it.load).length)) {
-      const mean = Math.abs(meanTorque(shaft.load));
-      inputs.push({
-        group: 'Speed and load', key: `load ${shaft.name}`, label: `load of ${shaft.name}`, hint: mean ? `in parts of that of the scene, ${quantity(mean, 'N m')} in the mean` : 'in parts of that of the scene',
-        unit: '×', factor: 1, range: [0, 3], start: 1,
-        set: (value) => [['set', { kind: 'parameter', name: `${shaft.place}.load`, value }]],
-      });
-    }
+  for (const shaft of shafts.filter((it) => tunables.includes(`${it.place}.load`))) {
+    const mean = Math.abs(meanTorque(list(shaft.load)));
+    inputs.push({
+      group: 'Speed and load', key: `load ${shaft.name}`, label: `load of ${shaft.name}`, hint: mean ? `in parts of that of the scene, ${quantity(mean, 'N m')} in the mean` : 'in parts of that of the scene',
+      unit: '×', factor: 1, range: [0, 3], start: 1,
+      set: (value) => [['set', { kind: 'parameter', name: `${shaft.place}.load`, value }]],
+    });
   }
   for (const shaft of shafts.filter((it) => !it.motion && (list(it.drive).length || !facts.driver))) {
     const size = Math.abs(meanTorque([...list(shaft.drive), ...list(shaft.load)])) || 10;
@@ -41,7 +39,7 @@ function liveInputs(facts, isTuned) {
     const { name, push, carrier } = tensioner;
     if (!push || push.kind === 'locked') continue;
     const turns = carrier.kind === 'arm';
-    if (isTuned && ['spring', 'torsion-spring'].includes(push.kind)) {
+    if (['spring', 'torsion-spring'].includes(push.kind)) {
       const moment = push.kind === 'torsion-spring';
       for (const [key, unit, otherwise] of [['preload', moment ? 'N m' : 'N', 1e3], ['stiffness', moment ? 'N m/rad' : 'N/m', 1e5]]) {
         const start = push[key] ?? 0;
@@ -98,7 +96,7 @@ function anewInputs(facts) {
   for (const [chain, route, it, way, of] of chains) {
     const isClosed = !it.ends && (!it.start || way) && sprockets.length > 1;
     if (isClosed && !way?.sag) add('Chain', `pretension${of}`, `${route}.pretension`, 'N', 1, upTo(way?.pretension, 3, 1000), way?.pretension ?? 0);
-    if (isClosed) add('Chain', `links${of}`, `${chain}.links`, '', 1, [Math.max(8, it.links - 20), it.links + 20], it.links, { whole: true });
+    if (isClosed) add('Chain', `links${of}`, `${chain}.links`, '', 1, [Math.max(8, it.links - 8), it.links + 8], it.links, { whole: true });
     add('Chain', `wear${of}`, `${chain}.elongation`, '%', 100, [0, 0.03], it.elongation ?? 0, { hint: 'by how much every link is longer than new' });
     if (it.damping_ratio !== undefined) add('Chain', `damping ratio of links${of}`, `${chain}.damping_ratio`, '', 1, [0, 0.2], it.damping_ratio);
   }
@@ -108,7 +106,7 @@ function anewInputs(facts) {
     if (Number.isFinite(coefficient)) add('Friction', `coefficient in ${words}`.replace('in teeth', 'on teeth').replace('in guides', 'on guides'), `contact.${place}.friction.coefficient`, '', 1, [0, 0.4], coefficient);
   }
   sprockets.forEach((it, i) => {
-    add('Teeth', it.name, `sprockets[${i}].teeth`, '', 1, [Math.max(5, Math.ceil(0.5 * it.teeth)), 2 * it.teeth], it.teeth, { whole: true });
+    add('Teeth', it.name, `sprockets[${i}].teeth`, '', 1, [Math.max(5, Math.ceil(0.7 * it.teeth)), Math.floor(1.4 * it.teeth)], it.teeth, { whole: true });
   });
   return inputs;
 }

@@ -9,7 +9,7 @@ const SAFE = 2000;
 class Lab {
   constructor(module) {
     Object.assign(this, {
-      module, playing: false, asked: false, dirty: true, pending: new Map(), opened: 0, spent: [], frames: 0,
+      module, playing: false, asked: false, dirty: true, pending: new Map(), wanted: new Map(), opened: 0, spent: [], frames: 0, works: 0,
       scene: null, film: null, view: null, history: null, safe: null, kept: null, moves: new Map(),
     });
     this.scrolls = new Scrolls(byId('curves'));
@@ -25,11 +25,31 @@ class Lab {
     return new Core(this.module, { ended: (error) => this.recover(error) });
   }
 
+  /** Whether something is read, assembled or gone back to. */
+  get isBusy() {
+    return this.works > 0;
+  }
+
+  /** Does some work, and is busy meanwhile. */
+  async during(work) {
+    this.works += 1;
+    try {
+      return await work();
+    } finally {
+      this.works -= 1;
+    }
+  }
+
+  /** Bytes of the module's memory in the worker that moves the drive. */
+  memory() {
+    return this.core.ask('memory');
+  }
+
   /** Opens a scene: `{ text, name }` or `{ preset }`; tells whether it moves. Mistakes are thrown. */
   async open(asked) {
     const about = await this.busy('Reading', this.core.ask('read', asked));
-    this.base = { text: about.text, name: about.name };
-    this.changes = new Map();
+    this.base = { text: about.text, name: about.name, links: about.resolved.chain?.links };
+    Object.assign(this, { changes: new Map(), closing: [] });
     this.sliders.forget();
     await this.start(about, false);
   }
@@ -38,7 +58,7 @@ class Lab {
   async start(about, keep) {
     const facts = factsOf(about);
     const every = sampling(facts);
-    const given = { text: about.text, name: about.name, tunable: tunablePlaces(facts), channels: channelsOf(facts), every };
+    const given = { text: about.text, name: about.name, tunable: facts.tunables, channels: channelsOf(facts), every };
     const wasPlaying = this.playing;
     this.pause();
     this.opened += 1;
@@ -64,15 +84,16 @@ class Lab {
     this.scrolls.open(this.history, facts);
     this.spectrum.open(this.history, facts);
     this.ledger.open(channel);
-    if (sameCurves) this.scrolls.keep(before);
-    this.sliders.open(liveInputs(facts, started.isTuned), anewInputs(facts));
+    if (sameCurves) this.scrolls.keep(before, 'before the start anew');
+    this.sliders.open(liveInputs(facts), anewInputs(facts));
     if (!keep) this.setPace(gentlePace(facts));
     for (const input of this.sliders.changes.filter((it) => !it.path)) this.change(input);
     this.take(started);
     this.scrolls.resize();
     this.spectrum.draw();
     tellStepping(started.statistics);
-    byId('title').textContent = about.title || about.name || 'Chain drive';
+    const changed = keep && this.changes.size ? ' (changed)' : '';
+    byId('title').textContent = `${about.title || about.name || 'Chain drive'}${changed}`;
     document.title = `${about.title || 'Chain drive'} · lab`;
     byId('tension').hidden = false;
     byId('back-to').disabled = true;
@@ -108,7 +129,11 @@ class Lab {
   }
 
   /** A new worker in place of one that has ended; it goes on from the last snapshot. */
-  async recover(error) {
+  recover(error) {
+    return this.during(() => this.goOn(error));
+  }
+
+  async goOn(error) {
     this.core = this.startCore();
     this.asked = false;
     this.opened += 1;
@@ -201,8 +226,10 @@ class Lab {
 
   /** Keeps a change for the next tick; one that starts anew begins at once. */
   change(input) {
-    if (input.path) this.anew(input);
-    else {
+    if (input.path) {
+      this.wanted.set(input.path, input.value);
+      this.during(() => this.renew());
+    } else {
       this.pending.set(input.key, input);
       if (!this.playing) this.flush().catch((error) => tell(error.message, 'bad'));
     }
@@ -242,42 +269,65 @@ class Lab {
     tell(`${input.label}: ${error.message}`, 'doubt');
   }
 
-  /** Starts anew with a value of the scene changed; the curves before stay in grey. */
-  async anew(input) {
-    const before = new Map(this.changes);
-    this.changes.set(input.path, input.value);
+  /** Starts anew with the values of the scene that have been changed, one start after the other. */
+  async renew() {
+    if (this.renewing) return;
+    this.renewing = true;
+    while (this.wanted.size) {
+      const wanted = [...this.wanted];
+      this.wanted.clear();
+      await this.anew(wanted);
+    }
+    this.renewing = false;
+  }
+
+  /** Starts anew with values of the scene, `[path, value]`; the curves before stay in grey. */
+  async anew(wanted) {
+    const [before, closing] = [new Map(this.changes), this.closing];
+    for (const [path, value] of wanted) {
+      // What closed the loop after a change before is sought anew.
+      if (CLOSED_BY.test(path)) this.closing = [];
+      if (value === this.sliders.inputs.get(path)?.start) this.changes.delete(path);
+      else this.changes.set(path, value);
+    }
+    const [path] = wanted.find((it) => CLOSED_BY.test(it[0])) ?? wanted[0];
     try {
-      const about = await this.busy('Reading', this.core.ask('read', { ...this.base, changes: [...this.changes] }));
+      const { about, also, note } = await this.busy('Reading', readClosed(this.core, this.base, [...this.changes, ...this.closing], path));
+      this.closing = [...this.closing, ...also];
       await this.start(about, true);
-      tell('Started anew; the curves before stand in grey.');
+      tell(`Started anew${note ? ` ${note}` : ''}. The curves before stand in grey.`);
     } catch (error) {
       if (error.ended) return;
-      this.changes = before;
-      const value = before.get(input.path) ?? input.start;
+      Object.assign(this, { changes: before, closing });
       await this.goBack(error);
-      input.value = value;
-      this.sliders.show(input);
+      for (const [place] of wanted) {
+        const input = this.sliders.inputs.get(place);
+        if (!input) continue;
+        input.value = before.get(place) ?? input.start;
+        this.sliders.show(input);
+      }
     }
   }
 
   /** The drive before a start that failed: it moves on. */
   async goBack(error) {
-    tell(error.message, 'bad');
+    tell(told(error), 'bad');
     if (this.ready || !this.given) return;
     const { safe, given, opened } = this;
     const started = await this.busy('Assembling', this.core.ask('start', given));
     const back = safe ? await this.core.ask('restore', { bytes: safe.bytes }) : started;
     if (opened !== this.opened) return;
-    this.ready = true;
+    Object.assign(this, { ready: true, asked: false });
     this.history.cut(back.time);
     this.take(back);
+    this.playing = false;
     this.play();
   }
 
   /** Everything as in the scene, at t = 0. */
   async reset() {
     if (!this.base) return;
-    await this.guarded(this.open(this.base));
+    await this.guarded(this.during(() => this.open(this.base)));
   }
 
   async step() {
@@ -292,7 +342,7 @@ class Lab {
   async keepState() {
     if (!this.ready) return;
     this.pause();
-    await this.guarded(this.core.ask('snapshot').then((kept) => {
+    await this.guarded(this.core.ask('snapshot', { anew: true }).then((kept) => {
       this.kept = { ...kept, inputs: [...this.sliders.inputs.values()].map((it) => [it.key, it.value]), moves: new Map(this.moves) };
       byId('back-to').disabled = false;
       tell(`Kept as A at t = ${quantity(kept.time, 's', 4)}. Play on, come back to A, change something: its curves stand in grey beside B.`);
@@ -306,7 +356,7 @@ class Lab {
     const curves = this.history.copyFrom(kept.time);
     await this.guarded(this.core.ask('restore', { bytes: kept.bytes.slice() }).then((answer) => {
       this.history.cut(answer.time);
-      this.scrolls.keep(curves.length > 1 ? curves : null);
+      this.scrolls.keep(curves.length > 1 ? curves : null, `A, from t = ${quantity(kept.time, 's', 4)} on`);
       this.moves = new Map(kept.moves);
       for (const [key, value] of kept.inputs) {
         const input = this.sliders.inputs.get(key);
@@ -369,11 +419,17 @@ class Lab {
     tellTension(this.view, [quantity(slack, 'N', 2), quantity(tight, 'N', 2)]);
     byId('force').hidden = !(this.view.largestForce > 0);
     tellLengths(this.view);
+    tellRoller(this.view, this.view.followed);
     this.ledger.draw(this.history);
     if (!byId('spectrum').hidden) this.spectrum.draw();
     if (!byId('energy').hidden && this.ready) this.core.ask('statistics').then(tellStepping, () => {});
     tellHorizon(this);
   }
+}
+
+/** A mistake in a line: without the excerpts that a scene's text has in the editor. */
+function told({ message, problems }) {
+  return problems?.length ? problems.map((it) => `${it.path ? `${it.path}: ` : ''}${it.message}`).join('\n') : message;
 }
 
 /** A time that shows what changes. */
@@ -387,7 +443,13 @@ function tell(text, how = '') {
   byId('message').hidden = !text;
   byId('message').className = how;
   byId('message-text').textContent = text;
+  clearTimeout(tell.waiting);
+  // What is only told goes by itself; mistakes stay.
+  if (text && !how) tell.waiting = setTimeout(() => tell(''), READING);
 }
+
+/** Milliseconds in which a line is read. */
+const READING = 9000;
 
 /** Rollers that can be followed. */
 function fillFollow(film) {

@@ -60,7 +60,7 @@ class OwnDrive {
   /** A field of a row, `scale` times what is kept. */
   field(it, key, label, { scale = 1, least, most, whole, text, after } = {}) {
     const input = document.createElement('input');
-    const shown = () => (text ? it[key] : +(scale * it[key]).toPrecision(7));
+    const shown = () => (text ? it[key] : +(scale * it[key]).toFixed(2));
     Object.assign(input, text ? { type: 'text', maxLength: 40 } : { type: 'number', step: whole ? 1 : 'any' });
     input.value = shown();
     input.setAttribute('aria-label', `${label} of ${it.name}`);
@@ -102,6 +102,7 @@ class OwnDrive {
         return;
       }
       Object.assign(wheel, { role: role.value, value: role.value === 'drives' ? 300 : 0, isChosen: false });
+      if (['idler', 'outside'].includes(role.value)) this.plan.place(wheel);
       this.plan.load();
       this.change();
     };
@@ -149,6 +150,8 @@ class OwnDrive {
   /** Asks the core how the chain lies; of several changes only the last is asked about. */
   async lay() {
     this.draw();
+    // What closed the loop before the change may not close it now.
+    for (const button of byId('own-fits').children) button.disabled = true;
     this.wanted = true;
     if (this.laying) return;
     this.laying = true;
@@ -195,8 +198,9 @@ class OwnDrive {
     return this.sorted[0] ?? null;
   }
 
+  /** Whether the loop closes, but for what rounding the places leaves. */
   get isClosed() {
-    return Boolean(this.plan.links && this.layout && Math.abs(this.layout.misfit) < 1e-6 * this.plan.chain.pitch);
+    return Boolean(this.plan.links && this.layout && Math.abs(this.layout.misfit) < 1e-4 * this.plan.chain.pitch);
   }
 
   tellLayout() {

@@ -61,13 +61,17 @@ class Plan {
     }
   }
 
-  /** Wheels in the order in which a counter-clockwise chain passes them: by their angle about the middle of those inside. */
   get order() {
-    const inside = this.wheels.filter((it) => it.role !== 'outside');
+    return this.ordered(this.wheels);
+  }
+
+  /** Wheels in the order in which a counter-clockwise chain passes them: by their angle about the middle of those inside. */
+  ordered(wheels) {
+    const inside = wheels.filter((it) => it.role !== 'outside');
     const middle = (axis) => inside.reduce((sum, it) => sum + it[axis], 0) / inside.length;
     const [x, y] = [middle('x'), middle('y')];
     const angle = (it) => Math.atan2(it.y - y, it.x - x);
-    const sorted = [...this.wheels].sort((a, b) => angle(a) - angle(b));
+    const sorted = [...wheels].sort((a, b) => angle(a) - angle(b));
     const first = sorted.findIndex((it) => it.role === 'drives');
     return first > 0 ? [...sorted.slice(first), ...sorted.slice(0, first)] : sorted;
   }
@@ -77,9 +81,12 @@ class Plan {
     for (let i = 1; ; i++) if (!taken.has(`${kind}${i > 1 ? ` ${i}` : ''}`)) return `${kind}${i > 1 ? ` ${i}` : ''}`;
   }
 
-  /** Spans of the order, each with its wheels and its ends on the outer side of the pitch circles, roughly. */
   get spans() {
-    const { order } = this;
+    return this.spansOf(this.order);
+  }
+
+  /** Spans between wheels in an order, each with its length and the direction out of the loop. */
+  spansOf(order) {
     return order.map((from, i) => {
       const to = order[(i + 1) % order.length];
       const [dx, dy] = [to.x - from.x, to.y - from.y];
@@ -89,9 +96,9 @@ class Plan {
     });
   }
 
-  /** The slack span: after the driving sprocket where that turns counter-clockwise, before it else. */
-  get slack() {
-    const { spans } = this;
+  /** The slack span without some wheel: after the driving sprocket where that turns counter-clockwise, before it else. */
+  slackWithout(wheel) {
+    const spans = this.spansOf(this.ordered(this.wheels.filter((it) => it !== wheel)));
     return this.wheels.find((it) => it.role === 'drives').value >= 0 ? spans[0] : spans.at(-1);
   }
 
@@ -104,14 +111,20 @@ class Plan {
     this.load();
   }
 
-  /** An idler in the slack span, which it bows outwards by a twentieth. */
   addIdler() {
-    const { from, to, length, out } = this.slack;
     const wheel = { name: this.name('idler'), teeth: 17, x: 0, y: 0, role: 'idler', value: 0 };
-    const reach = 0.5 * (this.radius(from) + this.radius(to)) + 0.05 * length - this.radius(wheel);
+    this.wheels.push(wheel);
+    this.place(wheel);
+  }
+
+  /** Puts an idler into the slack span, which it bows by a twentieth: outwards from within the loop, inwards from without. */
+  place(wheel) {
+    const { from, to, length, out } = this.slackWithout(wheel);
+    const side = wheel.role === 'outside' ? -1 : 1;
+    const line = 0.5 * (this.radius(from) + this.radius(to));
+    const reach = line + side * (0.05 * length - this.radius(wheel));
     wheel.x = tidy(0.5 * (from.x + to.x) + reach * out[0]);
     wheel.y = tidy(0.5 * (from.y + to.y) + reach * out[1]);
-    this.wheels.push(wheel);
   }
 
   addGuide() {
@@ -149,7 +162,7 @@ class Plan {
   /** The text of the scene; a mover goes wherever the links close. */
   text(mover = null) {
     const { chain, order } = this;
-    const millimetres = (value) => `"${+(1e3 * value).toPrecision(12)} mm"`;
+    const millimetres = (value) => `"${+(1e3 * value).toFixed(4)} mm"`;
     const lines = ['# Laid out in the lab. What is called assumed there nobody has measured: put in what you know.', '', 'title = "A drive of one\'s own"', '',
       '[chain]', `type = ${JSON.stringify(chain.name)}`];
     if (this.links && !mover) lines.push(`links = ${this.links}`);

@@ -24,7 +24,7 @@ function listenToLab(lab) {
     follow(roller) {
       lab.view?.follow(roller);
       byId('follow').value = roller;
-      lab.dirty = true;
+      Object.assign(lab, { dirty: true, toldAt: 0 });
     },
   };
   listenToPicture(byId('picture'), picture);
@@ -58,6 +58,7 @@ function listenToLab(lab) {
     undo, closer: () => zoom(1.4), farther: () => zoom(1 / 1.4), whole, stop: () => lab.stop(), theme: () => lab.changeTheme(),
     keys: () => byId('help').showModal(), edit: () => lab.editor.show(), own: () => lab.own.show(), judge: () => lab.given && makeReport(lab),
     link: () => lab.scene && makeLink(lab).catch((error) => tell(error.message, 'bad')), 'message-away': () => tell(''),
+    'kept-away': () => lab.scrolls.keep(null),
     further: () => findHorizon(lab, 4 * lab.horizon.follow),
   };
   for (const [id, action] of Object.entries(buttons)) byId(id).onclick = action;
@@ -144,13 +145,15 @@ async function start() {
   lab.onStarted = () => seekHorizon(lab);
   /** Opens a scene; the drive before goes on where it cannot be. */
   const open = async (asked) => {
-    try {
-      await lab.open(asked);
-      tell('');
-    } catch (error) {
-      if (!error.ended) await lab.goBack(error);
-      throw error;
-    }
+    await lab.during(async () => {
+      try {
+        await lab.open(asked);
+        tell('');
+      } catch (error) {
+        if (!error.ended) await lab.goBack(error);
+        throw error;
+      }
+    });
     byId('preset').value = asked.preset ?? '';
   };
   lab.editor = new Editor(lab, open);
@@ -177,13 +180,17 @@ async function start() {
 
   /** The scene of the page or of its address; mistakes in it are shown where they stand. */
   const openGiven = async () => {
-    let given = null;
+    let [given, refused] = [null, ''];
     try {
       given = await sceneOfPage();
     } catch (error) {
-      tell(`The scene in the address cannot be read: ${error.message}`, 'bad');
+      refused = `The scene in the address cannot be read: ${error.message}.`;
     }
-    if (!given) return openPreset(FIRST);
+    if (!given) {
+      await openPreset(FIRST);
+      if (refused) tell(refused, 'bad');
+      return null;
+    }
     return open(given).catch((error) => lab.editor.show(given, error.problems ?? [{ message: error.message }]));
   };
   window.addEventListener('hashchange', () => {
@@ -192,8 +199,10 @@ async function start() {
   await openGiven();
   byId('wait').hidden = true;
   byId('wait').style.display = 'none';
+  const openedAt = performance.now();
   window.lab = {
     lab,
+    openedAt,
     get time() { return lab.time; },
     get playing() { return lab.playing; },
     get ready() { return lab.ready; },

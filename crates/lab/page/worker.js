@@ -5,6 +5,9 @@ const { Drive, Simulation, Recorder, Picture, Snapshot, RunReport } = wasm_bindg
 /** What is in motion; nothing before `start`. */
 let held = null;
 
+/** Memory of the module. */
+let memory = null;
+
 /** Frees an object of the module that may not be there. */
 const free = (it) => it?.free();
 
@@ -19,7 +22,8 @@ function described(drive) {
     unlaid = error.message;
   }
   return {
-    text: drive.text, name: drive.name, title: drive.title, resolved: JSON.parse(drive.resolved()), layout, unlaid,
+    text: drive.text, name: drive.name, title: drive.title, resolved: JSON.parse(drive.resolved()),
+    tunables: JSON.parse(drive.tunables()), layout, unlaid,
   };
 }
 
@@ -29,17 +33,6 @@ function withDrive(drive, use) {
     return use(drive);
   } finally {
     drive.free();
-  }
-}
-
-/** A drive whose loads can be changed while it moves, where the scene lets them. */
-function tuned(drive, tunable) {
-  if (!tunable.length) return drive;
-  try {
-    return drive.replace('tunable', JSON.stringify(tunable));
-  } catch (error) {
-    if (error instanceof WebAssembly.RuntimeError) throw error;
-    return drive;
   }
 }
 
@@ -76,25 +69,21 @@ const answers = {
 
   /** A scene by its text or the name of a preset, with values replaced. */
   read({ text, preset, name, changes = [] }) {
-    let drive = preset ? Drive.preset(preset) : new Drive(text, name);
-    for (const [path, value] of changes) {
-      const before = drive;
-      try {
-        drive = before.replace(path, JSON.stringify(value));
-      } finally {
-        before.free();
-      }
-    }
-    return [withDrive(drive, described)];
+    const drive = preset ? Drive.preset(preset) : new Drive(text, name);
+    if (!changes.length) return [withDrive(drive, described)];
+    return [withDrive(drive, () => withDrive(drive.replaceAll(JSON.stringify(changes)), described))];
   },
 
   /** Sets a drive in motion. */
   start({ text, name, tunable, channels, every }) {
     if (held) Object.values(held).forEach((it) => it?.free?.());
     held = null;
-    const read = new Drive(text, name);
-    const drive = tuned(read, tunable);
-    if (drive !== read) read.free();
+    let drive = new Drive(text, name);
+    if (tunable.length) {
+      const read = drive;
+      drive = read.replace('tunable', JSON.stringify(tunable));
+      read.free();
+    }
     const moving = new Simulation(drive, 0);
     held = { drive, moving, channels, every, recorder: null, picture: null };
     record();
@@ -110,7 +99,6 @@ const answers = {
       columns: [...recorder.columns()],
       labels: JSON.parse(recorder.labels()),
       statistics: JSON.parse(moving.statistics()),
-      isTuned: drive !== read,
     }, handed];
   },
 
@@ -150,9 +138,12 @@ const answers = {
     return [begin + over];
   },
 
+  memory: () => [memory.buffer.byteLength],
   statistics: () => [JSON.parse(held.moving.statistics())],
 
-  snapshot() {
+  /** The state; `anew` begins samples there, so that those of a motion that comes back to it stand at the same times. */
+  snapshot({ anew }) {
+    if (anew) record();
     const snapshot = held.moving.snapshot();
     const bytes = snapshot.toBytes();
     snapshot.free();
@@ -188,7 +179,7 @@ const answers = {
 
 onmessage = ({ data: { module, id, what, given } }) => {
   if (module) {
-    wasm_bindgen.initSync({ module });
+    ({ memory } = wasm_bindgen.initSync({ module }));
     postMessage({ ready: true });
     return;
   }

@@ -136,26 +136,11 @@ class Player {
     const digits = Math.max(0, Math.min(9, 1 - Math.floor(Math.log10(this.duration / this.film.frames || 1))));
     byId('clock').innerHTML = `<b>${time.toFixed(digits)} s</b> <span>frame ${this.frame + 1} of ${this.film.frames}</span>`;
     byId('scrub').value = this.frame;
-    const { view, film: { arrays } } = this;
+    const { view } = this;
     const roller = view.followed >= 0 ? view.followed : view.marked;
-    byId('followed').hidden = roller < 0;
-    tellLengths(view);
-    if (roller < 0) return;
-    const [x, y] = view.roller(roller);
-    const place = (value) => withMinus(`${(value * 1e3).toFixed(2)} mm`);
-    const rows = [['x', place(x)], ['y', place(y)]];
-    const chain = this.film.chains.findLast((it) => it.firstRoller <= roller);
-    const link = roller - chain.firstRoller;
-    if (arrays.contact_force) rows.push(['on the teeth', quantity(arrays.contact_force.at(this.frame, roller), 'N')]);
-    if (arrays.link_tension && link < chain.links) {
-      rows.push(['link after it', quantity(arrays.link_tension.at(this.frame, chain.firstLink + link), 'N')]);
-    }
     const touched = view.marked === roller && this.contact?.frame === this.frame ? this.contact : null;
-    const told = touched ? `Roller ${roller} touches ${touched.body || 'the teeth'}` : `Roller ${roller}`;
-    if (touched?.peak) rows.push(['peak to come', quantity(touched.peak, 'N')]);
-    const cells = rows.map(([name, value]) => `<tr><td>${name}</td><td>${value}</td></tr>`).join('');
-    byId('followed').innerHTML = `<table><caption></caption>${cells}</table>`;
-    byId('followed').querySelector('caption').textContent = told;
+    tellLengths(view);
+    tellRoller(view, roller, touched);
   }
 }
 

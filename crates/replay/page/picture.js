@@ -35,6 +35,31 @@ function tellLengths(view) {
   byId('arrow').firstElementChild.setAttribute('d', `M0 5H${arrow}m-5-2.5l5 2.5l-5 2.5`);
 }
 
+/** The numbers of a roller beside the picture, and the contact that it has just begun; nothing without a roller. */
+function tellRoller(view, roller, touched = null) {
+  const place = byId('followed');
+  place.hidden = roller < 0;
+  if (roller < 0) return;
+  const { film: { arrays, chains }, frame } = view;
+  const millimetres = (value) => withMinus(`${(value * 1e3).toFixed(2)} mm`);
+  const [x, y] = view.roller(roller);
+  const rows = [['x', millimetres(x)], ['y', millimetres(y)]];
+  const chain = chains.findLast((it) => it.firstRoller <= roller);
+  const link = roller - chain.firstRoller;
+  if (arrays.contact_force) rows.push(['on the teeth', quantity(arrays.contact_force.at(frame, roller), 'N')]);
+  if (arrays.link_tension && link < chain.links) {
+    rows.push(['link after it', quantity(arrays.link_tension.at(frame, chain.firstLink + link), 'N')]);
+  }
+  if (touched?.peak) rows.push(['peak to come', quantity(touched.peak, 'N')]);
+  const table = document.createElement('table');
+  table.createCaption().textContent = touched ? `Roller ${roller} touches ${touched.body || 'the teeth'}` : `Roller ${roller}`;
+  for (const cells of rows) {
+    const row = table.insertRow();
+    for (const text of cells) row.insertCell().textContent = text;
+  }
+  place.replaceChildren(table);
+}
+
 /** Mouse, pen and fingers on the picture; what `player.view` shows may be another drive later. */
 function listenToPicture(canvas, player) {
   const fingers = new Map();
