@@ -360,14 +360,14 @@ def test_what_bends_is_told_and_identified_over_a_shorter_step() -> None:
     data = cd.measured(place / "rig.csv", **rig)
     free = {LOAD: (-1600.0, -1300.0), "route.pretension": (1000.0, 2500.0)}
     drive = cd.scenes.industrial_16b().replace({"run.run_in": "50 ms"})
-    found = cd.check_data(drive, data, free, until=0.1)
+    found = cd.check_data(drive, data, free, until=0.06)
     assert found.attrs["identified"] == 1, found.attrs["summary"]
     bent = found.sel(parameter="route.pretension")
     assert float(bent["bending"]) > 0.1
     assert float(bent["step"]) < 0.2
     assert "What route.pretension moves bends" in found.attrs["summary"]
     ends = {"route.pretension": [1500.0 - 15.0, 1500.0 + 15.0]}
-    runs = cd.sweep(drive, ends, until=0.1, method="verlet", step=1e-5)
+    runs = cd.sweep(drive, ends, until=0.06, method="verlet", step=1e-5)
     low, high = runs["span_tension_mean"].sel(span="driver-driven").to_numpy()
     slope = bent["sensitivity"].sel(feature="slack strand mean")
     assert float(slope) == pytest.approx((high - low) / 30.0 * 750.0, rel=0.1)
