@@ -283,12 +283,15 @@ def test_slips_of_unit_and_sign_are_named(table: pd.DataFrame) -> None:
     assert "kilo mixed up?" in problems["strand driven-driver"]
     assert "its sign is not that of the drive" in problems["torque driver"]
     assert problems["oil"] == "corresponds to no quantity"
-    slow = cd.measured(
-        pd.DataFrame({"time": np.arange(40) / 50.0, "torque driver [Nm]": -480.0 + np.arange(40)}),
-        turns={"driver": "300 rpm"},
-    )
+    assert "Say in `channels` what oil is" in check.attrs["summary"]
+    angle = 36.0 * np.arange(40) % 360.0
+    rows = {"time": np.arange(40) / 50.0, "torque driver [Nm]": -480.0 + np.arange(40)}
+    turns = {"driver": {"encoder": "shaft"}}
+    slow = cd.measured(pd.DataFrame(rows | {"shaft [°]": angle}), turns=turns)
     told = cd.check_data(cd.scenes.industrial_16b(), slow, until=0.05)
     assert "less than twice the 95 Hz of the mesh of driver" in told.attrs["summary"]
+    assert "tells how driver turns" in told.attrs["summary"]
+    assert told["problem"].sel(channel="shaft").item() == ""
 
 
 def test_a_comparison_is_drawn(run: xr.Dataset, table: pd.DataFrame) -> None:

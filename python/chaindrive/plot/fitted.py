@@ -139,9 +139,9 @@ def fit_profile(fit: xr.Dataset, parameter: str | None = None, *, ax: Axes | Non
         ax.plot(at[known], chi2[known], "o", color=CURVES[0])
         limit = f"t² at {100 * fit.attrs['level']:g} %"
         ax.axhline(wide**2, color=LIMIT, lw=0.8, label=limit)
-        for name in ("profile_lower", "profile_upper"):
-            if np.isfinite(own[name]):
-                ax.axvline(float(own[name]), color=CURVES[1], lw=0.8)
+        ends = [float(own[name]) for name in ("profile_lower", "profile_upper")]
+        for n, end in enumerate(it for it in ends if np.isfinite(it)):
+            ax.axvline(end, color=CURVES[1], lw=0.8, label=None if n else "interval")
         ax.set_xlabel(f"{own['parameter'].item()} [SI]")
         ax.set_ylabel("χ² above its least [–]")
         ax.set_ylim(bottom=0.0)
