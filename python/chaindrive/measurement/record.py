@@ -87,7 +87,8 @@ def measured(
     xarray.Dataset
         A variable a channel, (time,), with ``units``, ``long_name``, the name ``in_file`` and the
         ``unit_in_file``, ``sampling_rate`` [Hz], its ``quantity``, its ``sensor`` (JSON), and the
-        shaft whose angle it tells (``turns``). What has another time base stands along ``time_2`` and so on. With `turns` the angles of shafts
+        shaft whose angle it tells (``turns``). What has another time base stands along ``time_2``
+        and so on. With `turns` the angles of shafts
         are ``sprocket_angle`` (time, sprocket) [rad], so that `chaindrive.analysis.order_spectrum`
         takes the dataset as a run. Time begins at zero. Units that no drive has, such as volts,
         stay what they are. Attributes: ``measured_from``, ``findings`` (their names),
