@@ -20,6 +20,9 @@ VERDICTS := $(abspath target/verdicts.jsonl)
 # Cargo builds the bindings for the interpreter in .venv, whatever else is on the path.
 export PYO3_PYTHON := $(abspath $(BIN)/python)
 
+# What Python compiles is kept, whatever the shell says: tests begin many a Python of their own, and each would compile every library again.
+export PYTHONDONTWRITEBYTECODE :=
+
 # What is run and tested here has one code generation, the profile `quick`. What ships and what is measured has `release`: the same
 # bits, optimised throughout.
 QUICK := --profile quick

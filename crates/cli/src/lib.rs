@@ -84,6 +84,7 @@ enum Verb {
     Compare(measurement::Compare),
     Calibrate(measurement::Calibrate),
     Predict(measurement::Predict),
+    NextMeasurement(measurement::NextMeasurement),
     Uncertainty(measurement::Uncertainty),
     Tornado(measurement::Tornado),
     Sweep(sweep::Arguments),
@@ -145,6 +146,9 @@ where
         Verb::Compare(arguments) => Some(("compare", measurement::options(&arguments)?)),
         Verb::Calibrate(arguments) => Some(("calibrate", measurement::options(&arguments)?)),
         Verb::Predict(arguments) => Some(("predict", measurement::options(&arguments)?)),
+        Verb::NextMeasurement(arguments) => {
+            Some(("next-measurement", measurement::options(&arguments)?))
+        }
         Verb::Uncertainty(arguments) => Some(("uncertainty", measurement::options(&arguments)?)),
         Verb::Tornado(arguments) => Some(("tornado", measurement::options(&arguments)?)),
         _ => None,
@@ -216,6 +220,7 @@ fn carry_out(
         Verb::Compare(_) => Err(measurement::elsewhere("compare")),
         Verb::Calibrate(_) => Err(measurement::elsewhere("calibrate")),
         Verb::Predict(_) => Err(measurement::elsewhere("predict")),
+        Verb::NextMeasurement(_) => Err(measurement::elsewhere("next-measurement")),
         Verb::Uncertainty(_) => Err(measurement::elsewhere("uncertainty")),
         Verb::Tornado(_) => Err(measurement::elsewhere("tornado")),
         Verb::Sweep(arguments) => sweep::sweep(arguments, interrupted),
