@@ -1,4 +1,4 @@
-"""The package for browsers and Node against the core that Python has: the same drives, to rounding."""
+"""The package for browsers and Node against the core that Python has: equal to rounding."""
 
 import json
 import os
@@ -106,7 +106,8 @@ def test_every_preset_moves_as_it_does_natively() -> None:
                 off = np.abs(np.subtract(one, other))
                 assert off[:-energies].max(initial=0.0) <= limit, (name, registers)
             assert own["end"]["time"] == pytest.approx(time, rel=1e-12), name
-            # Both ledgers close alike: what is unaccounted for, over what moves and was supplied, or as far as what weight and springs store is rounded.
+            # Both ledgers close alike: what is unaccounted for, over what moves and was supplied,
+            # or as far as rounding of what weight and springs store goes.
             kinetic, supplied, residual = own["end"]["values"][-energies:]
             scale = max(kinetic, abs(supplied))
             assert abs(residual - end[-1]) <= 1e-6 * scale + 1e-12, (name, registers)
