@@ -307,15 +307,17 @@ class Simulation:
         rate: tuple[float, float] = (0.0, 0.0),
         at: float | None = None,
     ) -> None:
-        """Set a force on the centre of a sprocket, beside those of the scene.
+        """Set a force on the centre of a sprocket or of a roller, beside those of the scene.
 
         The bearing of a fixed centre bears it, a prescribed motion works against it; on springs or
-        a tensioner it moves the centre. Its work is ``forces_supplied`` of ``energy_flows``.
+        a tensioner it moves the centre, and a roller goes along with the force. Its work is
+        ``forces_supplied`` of ``energy_flows``.
 
         Parameters
         ----------
         sprocket
-            Its name; or ``tensioners.NAME``, the carrier itself, where forces of the scene act.
+            Its name; or ``tensioners.NAME``, the carrier itself, where forces of the scene act; or
+            ``rollers.NUMBER``, a roller of any chain but one with ideal joints.
         force
             Along x and y [N]; it acts until another one is set.
         over

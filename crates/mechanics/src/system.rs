@@ -11,6 +11,7 @@ mod inputs;
 mod member;
 mod memory;
 mod offset_spans;
+mod pull;
 mod solve;
 mod watching;
 
@@ -361,6 +362,7 @@ impl System {
         for (member, record) in self.chains.iter().zip(&mut record.chains) {
             member.evaluate(&self.bodies, at, prediction, a, rates, record);
         }
+        self.pull(at, a, rates);
         self.gather(record);
         let wrenches = [&record.wheel_wrenches, &record.rail_wrenches];
         let wrenches = wrenches.map(Vec::as_slice);

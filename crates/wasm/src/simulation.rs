@@ -92,9 +92,9 @@ impl Simulation {
 
     /// Sets what acts on the drive, from the last reading on.
     ///
-    /// @param kind `torque` \[N m\], `speed` \[rad/s\], `angle` \[rad\] of a shaft; `force` \[N, N m\] on a tensioner; `force_x`, `force_y` \[N\],
-    /// `centre_x`, `centre_y` \[m/s²\] of a sprocket; `parameter`, one that the scene lists under `tunable`
-    /// @param name of the shaft, sprocket or tensioner, or place of the parameter
+    /// @param kind `torque` \[N m\], `speed` \[rad/s\], `angle` \[rad\] of a shaft; `force` \[N, N m\] on a tensioner; `force_x`, `force_y` \[N\] on the
+    /// centre of a sprocket or on a roller; `centre_x`, `centre_y` \[m/s²\] of a sprocket; `parameter`, one that the scene lists under `tunable`
+    /// @param name of the shaft, sprocket or tensioner; `rollers.NUMBER`; or place of the parameter
     /// @param value in SI units
     /// @param over time within which it comes there, along a straight line \[s\]; it jumps when absent
     ///

@@ -27,7 +27,7 @@ pub enum Control {
     /// Force on a tensioner \[N, or N m on an arm\] towards positive coordinates, beside its push.
     Force(String),
     /// Force on the centre of a sprocket along x \[N\], by the name of the sprocket, beside those of the scene; or on a carrier where those of the
-    /// scene act, by its place `tensioners.NAME`.
+    /// scene act, by its place `tensioners.NAME`; or on a roller, `rollers.NUMBER`, counted from 0 over all chains.
     ForceX(String),
     /// The same along y.
     ForceY(String),
@@ -255,6 +255,8 @@ impl Moving {
 
 /// What stands before the name of a tensioner where a sprocket may be meant as well.
 const CARRIERS: &str = "tensioners.";
+/// What stands before the number of a roller.
+const ROLLERS: &str = "rollers.";
 
 /// Makes a control of the name of its target.
 type OfName = fn(String) -> Control;
@@ -298,12 +300,17 @@ impl Control {
             let sprocket = system.sprocket_named(name)?;
             Some(Input::Centre { sprocket, axis })
         };
-        let force = |axis| match name.strip_prefix(CARRIERS) {
-            Some(carrier) => (system.tensioner_named(carrier))
-                .map(|tensioner| Input::CarrierForce { tensioner, axis }),
-            None => {
-                (system.sprocket_named(name)).map(|sprocket| Input::CentreForce { sprocket, axis })
+        let force = |axis| {
+            if let Some(carrier) = name.strip_prefix(CARRIERS) {
+                let tensioner = system.tensioner_named(carrier)?;
+                return Some(Input::CarrierForce { tensioner, axis });
             }
+            if let Some(number) = name.strip_prefix(ROLLERS) {
+                let roller = number.parse().ok()?;
+                return (roller < system.rollers()).then_some(Input::RollerForce { roller, axis });
+            }
+            let sprocket = system.sprocket_named(name)?;
+            Some(Input::CentreForce { sprocket, axis })
         };
         let mut tunable = assembled.drive.parts().tunable.iter();
         let input = match self {
@@ -338,11 +345,12 @@ impl Control {
             Self::ForceX(_) | Self::ForceY(_) => {
                 let carriers = system.tensioner_names().into_iter();
                 let carriers = carriers.map(|name| format!("{CARRIERS}{name}"));
-                system
-                    .sprocket_names()
-                    .into_iter()
-                    .chain(carriers)
-                    .collect()
+                let rollers = match system.rollers() {
+                    0 => None,
+                    count => Some(format!("{ROLLERS}0 to {ROLLERS}{}", count - 1)),
+                };
+                let sprockets = system.sprocket_names().into_iter();
+                sprockets.chain(carriers).chain(rollers).collect()
             }
             Self::CentreX(_) | Self::CentreY(_) => system.sprocket_names(),
             Self::Parameter(_) => tunable.map(|it| it.place.clone()).collect(),
@@ -358,7 +366,7 @@ impl Control {
     fn target(&self) -> (&'static str, &str) {
         match self {
             Self::Force(name) => ("tensioner", name),
-            Self::ForceX(name) | Self::ForceY(name) => ("centre or carrier", name),
+            Self::ForceX(name) | Self::ForceY(name) => ("centre, carrier or roller", name),
             Self::Torque(name) | Self::Speed(name) | Self::Angle(name) => ("shaft", name),
             Self::CentreX(name) | Self::CentreY(name) => ("sprocket", name),
             Self::Parameter(place) => ("parameter", place),

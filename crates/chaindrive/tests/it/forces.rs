@@ -371,3 +371,52 @@ fn a_force_over_an_angle_has_the_forcings_of_its_shaft() {
     let why = self::assembled(&pair(&ramp)).function_of_time();
     assert_eq!(why, Some("a force that is switched on at a time"));
 }
+
+/// A hand at a roller: its work is F Δx whatever the links are, and what it gives a free ring is F t of momentum.
+#[test]
+fn a_pull_at_a_roller_gives_work_and_momentum() {
+    for (preset, roller, force, time) in [
+        // The last one, whose ghosts close the ring.
+        ("spinning_ring", 19, 20.0, 2e-4),
+        ("bicycle", 30, 500.0, 1e-4),
+    ] {
+        let scene = Scene::preset(preset).unwrap();
+        let mut simulation = moving(&assembled(&scene), Stepping::Rk4);
+        let start = simulation.advance_to(0.0).unwrap().clone();
+        let control = Control::ForceX(format!("rollers.{roller}"));
+        simulation.set(&control, force).unwrap();
+        simulation.set_at(time, &control, 0.0).unwrap();
+        let end = simulation.advance_to(time).unwrap().clone();
+        let work = end.energy.flow(Flow::Forces);
+        let exact = force * (end.roller_x[roller] - start.roller_x[roller]);
+        assert!(exact.abs() > 1e-5, "{preset}: {exact}");
+        assert!(
+            (work / exact - 1.0).abs() < 1e-6,
+            "{preset}: {work} {exact}"
+        );
+        if preset == "spinning_ring" {
+            let residual = end.energy.residual(&start.energy);
+            assert!(residual.abs() < 1e-6 * exact.abs(), "{residual} of {exact}");
+            let momentum = 8.89e-3 * end.roller_vx.iter().sum::<f64>();
+            assert!((momentum / (force * time) - 1.0).abs() < 1e-9, "{momentum}");
+        }
+    }
+}
+
+/// Ideal hinges would open; what is no roller has no number.
+#[test]
+fn a_pull_is_refused_where_there_is_no_such_roller() {
+    let ring = Scene::preset("spinning_ring").unwrap();
+    let mut simulation = moving(&assembled(&ring), Stepping::Auto);
+    for name in ["rollers.20", "rollers.last", "rollers.-1"] {
+        let error = simulation.set(&Control::ForceY(name.into()), 1.0);
+        let message = error.unwrap_err().to_string();
+        assert!(message.contains("rollers.0 to rollers.19"), "{message}");
+    }
+    let hinged = Scene::preset("industrial_16b").unwrap();
+    let hinged = hinged.replace("chain.model", "ideal-joints").unwrap();
+    let mut simulation = moving(&assembled(&hinged), Stepping::Auto);
+    let error = simulation.set(&Control::ForceX("rollers.0".into()), 1.0);
+    let message = error.unwrap_err().to_string();
+    assert!(message.contains("ideal hinges"), "{message}");
+}

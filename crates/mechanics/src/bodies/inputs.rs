@@ -52,6 +52,13 @@ pub enum Input {
         /// Axis.
         axis: usize,
     },
+    /// Force on the centre of a roller along x (0) or y (1) \[N\]: a hand at the chain.
+    RollerForce {
+        /// Index of the roller, counted over all chains.
+        roller: usize,
+        /// Axis.
+        axis: usize,
+    },
     /// Factor on the loads of a shaft \[–\], 1 at the start.
     Load {
         /// Index of the shaft.
@@ -77,6 +84,8 @@ pub(crate) struct Inputs {
     /// Along x, then y of every body.
     centre_forces: Vec<Ramp>,
     carrier_forces: Vec<Ramp>,
+    /// Forces on rollers that somebody has pulled at, by their numbers.
+    roller_forces: Vec<(usize, [Ramp; 2])>,
     /// Parameters that are no more those of the scene.
     pub(crate) tuned: Vec<(Input, f64)>,
     /// Changes to come, the earliest first: of equal times in the order of their planning.
@@ -135,6 +144,24 @@ impl Inputs {
         pair(&self.carrier_forces, tensioner, t)
     }
 
+    /// Forces on rollers along x and y \[N\], by the numbers of the rollers over all chains.
+    pub(crate) fn roller_forces(&self, t: f64) -> impl Iterator<Item = (usize, [f64; 2])> {
+        let forces = self.roller_forces.iter();
+        forces.map(move |(roller, ramps)| (*roller, ramps.map(|ramp| ramp.at(t))))
+    }
+
+    /// Sets a force on a roller along an axis on its course.
+    pub(crate) fn set_roller_force(&mut self, roller: usize, axis: usize, t: f64, to: Course) {
+        let forces = &mut self.roller_forces;
+        let place = forces.iter().position(|(known, _)| *known == roller);
+        let place = place.unwrap_or_else(|| {
+            forces.push((roller, Default::default()));
+            forces.len() - 1
+        });
+        let ramp = &mut forces[place].1[axis];
+        *ramp = Ramp::new(ramp.at(t), t, to);
+    }
+
     /// Sets a force on a centre along an axis on its course.
     pub(crate) fn set_centre_force(&mut self, sprocket: usize, axis: usize, t: f64, to: Course) {
         set(&mut self.centre_forces, 2 * sprocket + axis, t, to);
@@ -166,7 +193,9 @@ impl Inputs {
         let mut times = self.planned.iter().map(|(time, ..)| *time);
         let planned = times.find(|time| *time > t);
         let points = self.centre_forces.iter().chain(&self.carrier_forces);
+        let rollers = self.roller_forces.iter().flat_map(|(_, ramps)| ramps);
         let ramps = self.torques.iter().chain(&self.forces).chain(points);
+        let ramps = ramps.chain(rollers);
         let ends = ramps.filter_map(|ramp| ramp.next_knot(t));
         ends.chain(planned).reduce(f64::min)
     }

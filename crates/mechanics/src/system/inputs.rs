@@ -44,6 +44,13 @@ impl System {
                 Some(_) => None,
                 None => Some("it is locked where it was assembled; give it a spring"),
             },
+            Input::RollerForce { roller, .. } => {
+                let (member, _) = self.member_with(roller);
+                let hinged = member.chain.has_reactions();
+                hinged.then_some(
+                    "its links are joined by ideal hinges, which a force on a roller would open; give the joints a clearance",
+                )
+            }
             Input::CarrierForce {
                 tensioner: index, ..
             } => {
@@ -158,6 +165,10 @@ impl System {
                 Input::CarrierForce { tensioner, axis } => {
                     let inputs = &mut self.bodies.inputs;
                     inputs.set_carrier_force(tensioner, axis, t, course);
+                }
+                Input::RollerForce { roller, axis } => {
+                    let inputs = &mut self.bodies.inputs;
+                    inputs.set_roller_force(roller, axis, t, course);
                 }
                 Input::Centre { sprocket, axis } => {
                     if let Some(motion) = self.centre_motion(sprocket, axis) {
