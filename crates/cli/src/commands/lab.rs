@@ -71,9 +71,9 @@ pub(crate) fn lab(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
 }
 
 fn built(path: &Path) -> Result<String, Failure> {
-    fs::read_to_string(path).map_err(|source| Failure::File {
-        path: path.display().to_string(),
-        source,
+    fs::read_to_string(path).map_err(|error| {
+        let path = path.display();
+        Failure::Argument(format!("--page: {path}: {error}; `make lab` builds it"))
     })
 }
 
