@@ -5,12 +5,15 @@ import json
 import warnings
 from pathlib import Path
 
+import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
 from scipy.signal import lfilter
 from scipy.stats import t as student
+
+mpl.use("Agg")
 
 import chaindrive as cd
 from chaindrive.measurement.free import open_to
@@ -101,6 +104,27 @@ def test_a_resumed_fit_computes_nothing_twice(
     assert again.attrs["computed"] == len(late)
     xr.testing.assert_identical(again.drop_attrs(deep=False), fit.drop_attrs(deep=False))
     assert again.attrs["scene"] == fit.attrs["scene"]
+
+
+@pytest.mark.costs("a fit is some twenty runs")
+def test_a_profile_is_the_interval_of_a_drive_that_is_straight(
+    fit: xr.Dataset, data: xr.Dataset, store: Path
+) -> None:
+    """The mean of the strand is proportional to the load: ``χ² = ((θ − θ̂)/σ)²``."""
+    found = cd.calibrate(drive(), data, FREE, store=store, starts=3, profiles=[LOAD])
+    own = found.sel(parameter=LOAD)
+    assert float(own["estimate"]) == float(fit["estimate"].sel(parameter=LOAD))
+    straight = ((own["profile_value"] - own["estimate"]) / own["error"]) ** 2
+    np.testing.assert_allclose(own["profile_chi2"], straight, rtol=0.25, atol=1e-9)
+    width = float(own["upper"] - own["lower"])
+    for end in ("lower", "upper"):
+        assert float(own[f"profile_{end}"]) == pytest.approx(float(own[end]), abs=0.05 * width)
+    assert found["profile_chi2"].sel(parameter=GAIN).isnull().all()
+    ax = cd.plot.fit_profile(found, LOAD)
+    assert ax.get_xlabel() == f"{LOAD} [SI]"
+    for given, parameter in ((found, GAIN), (fit, None)):
+        with pytest.raises(cd.ParameterError, match="there is no profile of"):
+            cd.plot.fit_profile(given, parameter)
 
 
 SLOW_SHAFT = {"sprockets.driver.motion.speed": "300 rpm"}
@@ -213,6 +237,8 @@ def test_what_is_not_an_argument_is_told(data: xr.Dataset) -> None:
         ({"validation": 1.0}, r"must be in \[0, 0.9\)"),
         ({"starts": 0}, "at least 1"),
         ({"priors": {"chain.mass": (1.0, 0.1)}}, "it is not free"),
+        ({"profiles": ["chain.mass"]}, "is not free"),
+        ({"profiles": True, "loss": "huber"}, "with the loss 'huber' has none"),
     ):
         with pytest.raises(cd.MeasurementError, match=words):
             cd.calibrate(drive(), data, FREE, until=0.01, **arguments)

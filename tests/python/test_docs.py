@@ -4,6 +4,7 @@ import doctest
 import importlib.util
 import pkgutil
 import re
+import sys
 import tomllib
 from pathlib import Path
 
@@ -51,6 +52,14 @@ MODULES = [
     "chaindrive",
     *(module.name for module in pkgutil.walk_packages(cd.__path__, "chaindrive.")),
 ]
+
+
+@pytest.fixture(autouse=True)
+def figures_closed():
+    """No test leaves a figure to the next: matplotlib warns of many."""
+    yield
+    if "matplotlib.pyplot" in sys.modules:
+        sys.modules["matplotlib.pyplot"].close("all")
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.name)

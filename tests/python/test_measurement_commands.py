@@ -188,8 +188,8 @@ def test_a_wrong_argument_is_told(
     assert words in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
-@pytest.mark.costs("another interpreter draws until it is stopped")
 def test_what_ctrl_c_stops_is_kept_where_there_is_a_store(place: Path) -> None:
     import signal
 

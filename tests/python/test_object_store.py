@@ -22,7 +22,8 @@ pytest.importorskip("zarr")
 stores = pytest.importorskip("obstore.store")
 moto = pytest.importorskip("moto.server")
 
-from test_sweep_store import RING, assert_same, children, cluster, local_executors, ring  # noqa: E402
+from clusters import cluster  # noqa: E402
+from test_sweep_store import RING, assert_same, children, local_executors, ring  # noqa: E402
 
 # A task a variant: the server answers one request after the other.
 SPEEDS = {"chain.start.speed": np.linspace(300.0, 400.0, 4), "chain.mass": ["8 g", "9 g"]}
