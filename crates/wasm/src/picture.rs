@@ -14,7 +14,7 @@ use crate::thrown::thrown;
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct Picture {
-    shown: replay::Picture,
+    pub(crate) shown: replay::Picture,
     roller_x: Vec<f64>,
     roller_y: Vec<f64>,
     link_tension: Vec<f64>,
