@@ -20,6 +20,9 @@ VERDICTS := $(abspath target/verdicts.jsonl)
 # Cargo builds the bindings for the interpreter in .venv, whatever else is on the path.
 export PYO3_PYTHON := $(abspath $(BIN)/python)
 
+# What Python compiles is kept, whatever the shell says: tests begin many a Python of their own, and each would compile every library again.
+export PYTHONDONTWRITEBYTECODE :=
+
 # What is run and tested here has one code generation, the profile `quick`. What ships and what is measured has `release`: the same
 # bits, optimised throughout.
 QUICK := --profile quick
@@ -33,7 +36,7 @@ CARGO_TEST := cargo test $(QUICK) --workspace --quiet --no-fail-fast --tests
 endif
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test quick slowest licences check check-rust check-python test-rust test-python bench report estimates bicycle-losses how-real validation validation-report docs pages site wheels clean
+.PHONY: help setup run test quick slowest licences check check-rust check-python test-rust test-python bench report estimates bicycle-losses how-real validation validation-report docs pages site lab wheels clean
 # A build that failed leaves no stamp behind.
 .DELETE_ON_ERROR:
 
@@ -115,6 +118,27 @@ pages: setup $(VENV)/site-ready docs ## Build the documentation in target/site; 
 site: browser pages ## Build the documentation, and test replays and reports in a browser
 	$(BIN)/pytest tests/site
 
+# The module, the package around it and the page of the lab. The tool that writes the glue has to have the version of the lock.
+WASM := wasm32-unknown-unknown
+BINDGEN_VERSION := $(shell awk '/^name = "wasm-bindgen"$$/ { getline; gsub(/"/, ""); print $$3 }' Cargo.lock)
+BINDGEN := target/tools/wasm-bindgen-$(BINDGEN_VERSION)
+MODULE := target/$(WASM)/release/chaindrive_wasm.wasm
+
+lab: $(BINDGEN)/bin/wasm-bindgen ## Build the package for browsers and Node in target/lab/package, and the lab, a page that computes drives
+	@rustc --print target-libdir --target $(WASM) | xargs test -d || { \
+		echo "Rust cannot compile for browsers here; install the target: rustup target add $(WASM)" >&2; exit 1; }
+	cargo build --release --quiet --target $(WASM) -p chaindrive-wasm
+	rm -rf target/lab
+	$< --target web --out-name index --out-dir target/lab/package $(MODULE)
+	cp crates/wasm/package/* target/lab/package/
+	$< --target no-modules --no-typescript --out-name chaindrive --out-dir target/lab/page $(MODULE)
+	cargo run $(QUICK) --quiet -p chaindrive-lab -- target/lab/page/chaindrive.js target/lab/page/chaindrive_bg.wasm target/lab/lab.html
+	mkdir -p python/chaindrive/library
+	cp target/lab/lab.html python/chaindrive/library/
+
+$(BINDGEN)/bin/wasm-bindgen:
+	cargo install wasm-bindgen-cli --version $(BINDGEN_VERSION) --locked --quiet --root $(BINDGEN)
+
 # Both are linked against a C library that old machines have.
 WHEEL_TARGET = $(shell rustc -vV | sed -n 's/^host: //p')
 
@@ -123,7 +147,7 @@ CARGO_FOLDER = $(or $(CARGO_HOME),$(HOME)/.cargo)
 wheels: export RUSTFLAGS := --remap-path-prefix=$(CURDIR)=chaindrive --remap-path-prefix=$(CARGO_FOLDER)=cargo
 wheels: export CFLAGS := -ffile-prefix-map=$(CARGO_FOLDER)=cargo
 
-wheels: $(VENV)/wheels-ready ## Build a wheel for Linux and the source distribution in dist, and try them
+wheels: lab $(VENV)/wheels-ready ## Build a wheel for Linux and the source distribution in dist, and try them
 	rm -rf dist
 	@# By itself: in one call with the bindings it would have their stores.
 	PATH="$(abspath $(BIN)):$$PATH" $(BIN)/cargo-zigbuild zigbuild --release --quiet -p chaindrive-fmu --target $(WHEEL_TARGET).2.17

@@ -88,6 +88,11 @@ def main() -> int:
             from chaindrive.fmu import LIBRARY
 
             arguments += ["--library", str(LIBRARY)]
+        if arguments[1:2] == ["lab"] and not any(it.startswith("--page") for it in arguments):
+            from chaindrive.lab_page import PAGE
+
+            if PAGE.is_file():
+                arguments += ["--page", str(PAGE)]
         asked = _core._of_measurement(arguments)
         if asked is not None:
             import json

@@ -43,6 +43,7 @@ __all__ = [
     "fmu_library",
     "inspect",
     "is_being_written",
+    "lab_page",
     "layout_around",
     "layouts_of",
     "links_for",
@@ -342,6 +343,7 @@ def _drawn(
 def _of_measurement(arguments: list[str]) -> tuple[str, str] | None: ...
 def unit(text: str) -> tuple[float, float, str, str]: ...
 def layouts_of(drive: Drive) -> tuple[str, list[str]]: ...
+def lab_page(page: str, text: str, name: str) -> str: ...
 def layout_around(
     stops: Sequence[object],
     pitch: float | None,

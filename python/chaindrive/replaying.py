@@ -2,53 +2,29 @@
 
 from __future__ import annotations
 
-import html
 import json
 from collections.abc import Sequence
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any, overload
+from typing import Any, ClassVar, overload
 
 import numpy as np
 import xarray as xr
 
 from chaindrive import _core
 from chaindrive.results import held
+from chaindrive.shown_page import ShownPage
 
 __all__ = ["Replay", "replay"]
-
-#: Height of a replay in a notebook [pixels].
-_HEIGHT = 640
 
 #: Frames of a page: the start, and 5000 more.
 _FRAMES = 5001
 
 
-class Replay:
-    """A recorded run as one HTML page that needs nothing else.
+class Replay(ShownPage):
+    """A recorded run as one HTML page, in which the drive moves."""
 
-    In a notebook it shows itself, and stays when the notebook is converted: the page is part of
-    the output and asks for no kernel and no network.
-    """
-
-    def __init__(self, page: str) -> None:
-        self.html = page
-        """The page."""
-
-    def save(self, path: str | PathLike[str]) -> Path:
-        """Write the page to a file, in place of what was there, and return its path."""
-        _core.NewFile(path).write(self.html.encode())
-        return Path(path)
-
-    def _repr_html_(self) -> str:
-        # The page lives in a frame of its own: neither its style nor its names meet the notebook's.
-        return (
-            f'<iframe srcdoc="{html.escape(self.html)}" title="replay" '
-            f'style="width: 100%; height: {_HEIGHT}px; border: 0"></iframe>'
-        )
-
-    def __repr__(self) -> str:
-        return f"<chaindrive.Replay, {len(self.html) / 1e6:.2f} MB of HTML>"
+    _kind: ClassVar[str] = "replay"
 
 
 @overload

@@ -29,7 +29,7 @@ from chaindrive.sweep_tasks import begun, carry_out
 if TYPE_CHECKING:
     from obstore.store import ObjectStore
 
-__all__ = ["sweep"]
+__all__ = ["checked_workers", "sweep"]
 
 
 def sweep(
@@ -200,11 +200,7 @@ def sweep(
     settings = [(key, value) for key, value in _given(locals()) if key != "record"]
     _needed(drive)
     columns = _columns(vary, design)
-    if executor is not None and jobs is not None:
-        message = "`jobs` is for the threads of this process; the executor decides on its own"
-        raise ParameterError(message, "jobs", "leave it out, or give it to the executor")
-    if jobs is not None and jobs < 1:
-        raise ParameterError(f"jobs = {jobs}, must be at least 1", "jobs", "at least 1")
+    checked_workers(jobs, executor)
     varied = [(path, _values(values, path)) for path, values in columns.items()]
     asked = (_listed(record), design is not None, settings)
     core = _core.Sweep(drive._inner, varied, *asked)
@@ -245,6 +241,21 @@ def sweep(
         message = f"{tasks}: {lost[0]}" + ("" if place is None else f"; {note}")
         raise SimulationError(message, "executor") from lost[0]
     return dataset
+
+
+def checked_workers(jobs: int | None, executor: Executor | None) -> None:
+    """Refuse a number of threads that is none, or that stands beside an executor.
+
+    Raises
+    ------
+    ParameterError
+        Names ``jobs``.
+    """
+    if executor is not None and jobs is not None:
+        message = "`jobs` is for the threads of this process; the executor decides on its own"
+        raise ParameterError(message, "jobs", "leave it out, or give it to the executor")
+    if jobs is not None and jobs < 1:
+        raise ParameterError(f"jobs = {jobs}, must be at least 1", "jobs", "at least 1")
 
 
 def _columns(vary: Any, design: Any) -> dict[str, Any]:

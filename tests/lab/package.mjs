@@ -7,7 +7,7 @@ const requests = {
   motion({ text, steps }) {
     const drive = new chaindrive.Drive(text, 'scene');
     const moving = new chaindrive.Simulation(drive, 0);
-    const names = 'roller_x,roller_y,energy_supplied,energy_dissipated,energy_residual';
+    const names = 'roller_x,roller_y,energy_kinetic,energy_supplied,energy_residual';
     const read = () => {
       const recorder = new chaindrive.Recorder(moving, names, 1);
       recorder.advance(moving, moving.time, 1e9);

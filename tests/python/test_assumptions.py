@@ -133,7 +133,7 @@ MU = "contact.joints.friction.coefficient"
 def spread() -> xr.Dataset:
     laws = {MU: ("0.05", 0.15), LOAD: "normal(-1433 N m, 30 N m)"}
     outputs = ["sprocket_power_mean[driver]", "loss_share"]
-    return cd.uncertainty(drive(), laws, outputs, samples=16, until=0.02)
+    return cd.uncertainty(drive(), laws, outputs, samples=16, until=0.015, run_in="5 ms")
 
 
 @pytest.mark.costs("indices take many variants")

@@ -1,4 +1,4 @@
-"""The package for browsers and Node against the core that Python has: the same drives, to rounding."""
+"""The package for browsers and Node against the core that Python has: equal to rounding."""
 
 import json
 import os
@@ -36,7 +36,7 @@ import chaindrive as cd
 answers = []
 for text, steps in json.load(sys.stdin):
     moving = cd.Simulation(cd.Drive.from_toml(text), run_in=0)
-    names = ["roller_x", "roller_y", "energy_supplied", "energy_dissipated", "energy_residual"]
+    names = ["roller_x", "roller_y", "energy_kinetic", "energy_supplied", "energy_residual"]
     read = lambda: [float(x) for name in names for x in moving[name].values.ravel()]
     start = read()
     moving.advance(steps)
@@ -106,10 +106,11 @@ def test_every_preset_moves_as_it_does_natively() -> None:
                 off = np.abs(np.subtract(one, other))
                 assert off[:-energies].max(initial=0.0) <= limit, (name, registers)
             assert own["end"]["time"] == pytest.approx(time, rel=1e-12), name
-            # Both ledgers close alike: what is unaccounted for, over what was moved.
-            supplied, dissipated, residual = own["end"]["values"][-energies:]
-            scale = max(abs(supplied), abs(dissipated), 1e-9)
-            assert abs(residual - end[-1]) <= 1e-6 * scale, (name, registers)
+            # Both ledgers close alike: what is unaccounted for, over what moves and was supplied,
+            # or as far as rounding of what weight and springs store goes.
+            kinetic, supplied, residual = own["end"]["values"][-energies:]
+            scale = max(kinetic, abs(supplied))
+            assert abs(residual - end[-1]) <= 1e-6 * scale + 1e-12, (name, registers)
 
 
 def spoilt(count: int) -> list[str]:
@@ -155,9 +156,11 @@ def test_wrong_scenes_are_refused_in_the_same_words() -> None:
 def test_a_drive_at_rest_is_told_alike() -> None:
     drive = cd.scenes.timing_drive()
     (told,) = in_node(("told", {"text": drive.text}))
-    (again,) = in_node(("told", {"text": json.dumps(told["resolved"])}))
-    assert cd.diff(drive, cd.Drive.from_dict(again["resolved"])) == cd.diff(drive, drive.resolved())
-    assert told["description"].splitlines()[0] == str(drive.describe()).splitlines()[0]
+    full = cd.Drive.from_dict(told["resolved"])
+    # One number of a resolved scene is searched for: where the shoe closes the links.
+    assert {it.path for it in cd.diff(full, drive.resolved())} <= {"guides.shoe.face.bow"}
+    native = str(drive.describe()).partition("\nrun\n")
+    assert told["description"].partition("\nrun\n")[0] == native[0]
     assert told["layout"][0]["counts"]["even_above"] == 118
     assert told["svg"].startswith("<svg")
 
@@ -181,7 +184,7 @@ def test_a_run_is_judged() -> None:
 def test_presets_chains_and_channels_are_those_of_the_program() -> None:
     (known,) = in_node(("known", {}))
     assert {it["name"] for it in known["presets"]} == set(PRESETS)
-    assert {it["name"] for it in known["chains"]} == set(cd.catalogue().index)
+    assert {it["name"] for it in known["chains"]} == set(cd.catalogue()["chain"].values)
     assert {it["name"] for it in known["channels"]} == set(cd.channels())
     # As `cd.design` computes it, and a closed form confirms.
     assert known["centres"]["fits"][0]["centre_distance"] == pytest.approx(1.029929958, abs=1e-9)

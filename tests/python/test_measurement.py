@@ -283,12 +283,15 @@ def test_slips_of_unit_and_sign_are_named(table: pd.DataFrame) -> None:
     assert "kilo mixed up?" in problems["strand driven-driver"]
     assert "its sign is not that of the drive" in problems["torque driver"]
     assert problems["oil"] == "corresponds to no quantity"
-    slow = cd.measured(
-        pd.DataFrame({"time": np.arange(40) / 50.0, "torque driver [Nm]": -480.0 + np.arange(40)}),
-        turns={"driver": "300 rpm"},
-    )
+    assert "Say in `channels` what oil is" in check.attrs["summary"]
+    angle = 36.0 * np.arange(40) % 360.0
+    rows = {"time": np.arange(40) / 50.0, "torque driver [Nm]": -480.0 + np.arange(40)}
+    turns = {"driver": {"encoder": "shaft"}}
+    slow = cd.measured(pd.DataFrame(rows | {"shaft [°]": angle}), turns=turns)
     told = cd.check_data(cd.scenes.industrial_16b(), slow, until=0.05)
     assert "less than twice the 95 Hz of the mesh of driver" in told.attrs["summary"]
+    assert "tells how driver turns" in told.attrs["summary"]
+    assert told["problem"].sel(channel="shaft").item() == ""
 
 
 def test_a_comparison_is_drawn(run: xr.Dataset, table: pd.DataFrame) -> None:
@@ -360,14 +363,14 @@ def test_what_bends_is_told_and_identified_over_a_shorter_step() -> None:
     data = cd.measured(place / "rig.csv", **rig)
     free = {LOAD: (-1600.0, -1300.0), "route.pretension": (1000.0, 2500.0)}
     drive = cd.scenes.industrial_16b().replace({"run.run_in": "50 ms"})
-    found = cd.check_data(drive, data, free, until=0.1)
+    found = cd.check_data(drive, data, free, until=0.06)
     assert found.attrs["identified"] == 1, found.attrs["summary"]
     bent = found.sel(parameter="route.pretension")
     assert float(bent["bending"]) > 0.1
     assert float(bent["step"]) < 0.2
     assert "What route.pretension moves bends" in found.attrs["summary"]
     ends = {"route.pretension": [1500.0 - 15.0, 1500.0 + 15.0]}
-    runs = cd.sweep(drive, ends, until=0.1, method="verlet", step=1e-5)
+    runs = cd.sweep(drive, ends, until=0.06, method="verlet", step=1e-5)
     low, high = runs["span_tension_mean"].sel(span="driver-driven").to_numpy()
     slope = bent["sensitivity"].sel(feature="slack strand mean")
     assert float(slope) == pytest.approx((high - low) / 30.0 * 750.0, rel=0.1)

@@ -11,28 +11,31 @@ MU = "contact.joints.friction.coefficient"
 PRETENSION = "route.pretension"
 FREE = {LOAD: (-1600.0, -1300.0), PRETENSION: (1000.0, 2000.0), MU: (0.05, 0.15)}
 CANDIDATES = {
-    "flange": {"quantity": "sprocket_torque[driver]", "gain_uncertainty": 0.01},
+    "flange": {"quantity": "sprocket_torque[driver]", "gain_uncertainty": 0.03},
     "slack": "span_tension[driver-driven]",
     "losses": "losses",
 }
 
 
 def drive() -> cd.Drive:
-    return cd.scenes.industrial_16b().replace({"run.run_in": "20 ms"})
+    """At twice its speed a record of four pitches takes half the time."""
+    return cd.scenes.industrial_16b().replace(
+        {"run.run_in": "10 ms", "sprockets.driver.motion.speed": "600 rpm"}
+    )
 
 
 @pytest.fixture(scope="module")
 def proposed() -> xr.Dataset:
-    points = {"as it is": {}, "slow": {"sprockets.driver.motion.speed": "150 rpm"}}
-    return cd.next_measurement(drive(), FREE, CANDIDATES, excitations=points, until=0.05)
+    points = {"as it is": {}, "slow": {"sprockets.driver.motion.speed": "300 rpm"}}
+    return cd.next_measurement(drive(), FREE, CANDIDATES, excitations=points, until=0.025)
 
 
 @pytest.mark.costs("sensitivities at two operating points")
 def test_a_flange_leaves_the_error_of_its_gain(proposed: xr.Dataset) -> None:
-    """1 % of 1433 N m, beside ± 150 N m between which all is alike: σ = 150/√3."""
+    """3 % of 1433 N m, beside ± 150 N m between which all is alike: σ = 150/√3."""
     before = proposed["before"].to_numpy()
     np.testing.assert_allclose(before, [150.0 / 3**0.5, 500.0 / 3**0.5, 0.05 / 3**0.5])
-    gain = 0.01 * 1433.0
+    gain = 0.03 * 1433.0
     wanted = (gain**-2 + before[0] ** -2) ** -0.5
     after = proposed["after"].sel(excitation="as it is")
     assert float(after.sel(candidate="flange", target=LOAD)) == pytest.approx(wanted, rel=0.1)
@@ -74,7 +77,7 @@ def test_a_prediction_is_settled_from_where_a_fit_left_it() -> None:
         },
         coords={"output": ["mean"], "parameter": [LOAD]},
     )
-    given = {"candidates": ["sprocket_torque[driver]"], "known": known, "until": 0.05}
+    given = {"candidates": ["sprocket_torque[driver]"], "known": known, "until": 0.025}
     one = cd.next_measurement(drive(), free, settle=foretold, **given)
     other = cd.next_measurement(drive(), free, settle=LOAD, **given)
     assert float(other["before"].squeeze()) == pytest.approx(30.0)

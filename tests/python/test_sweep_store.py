@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from clusters import cluster
 
 import chaindrive as cd
 
@@ -126,18 +127,6 @@ def local_executors():
         yield "threads", executor
     with ProcessPoolExecutor(2, mp_context=fresh) as executor:
         yield "processes", executor
-
-
-@contextlib.contextmanager
-def cluster(tmp_path):
-    """An executor of a Dask cluster of two processes."""
-    distributed = pytest.importorskip("distributed")
-    here = {"n_workers": 2, "threads_per_worker": 1, "processes": True, "host": "127.0.0.1"}
-    here |= {"dashboard_address": None, "local_directory": tmp_path / "dask"}
-    with distributed.LocalCluster(**here) as cluster, distributed.Client(cluster) as client:
-        assert len(set(client.run(os.getpid).values()) - {os.getpid()}) == 2
-        with client.get_executor() as executor:
-            yield executor
 
 
 def stores_the_bits(name, executor, in_memory, store):

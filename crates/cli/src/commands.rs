@@ -6,6 +6,7 @@ pub(crate) mod describe;
 pub(crate) mod design;
 pub(crate) mod draw;
 pub(crate) mod fmu;
+pub(crate) mod lab;
 pub(crate) mod lists;
 pub(crate) mod measurement;
 pub(crate) mod output;

@@ -36,7 +36,7 @@ use failure::Failure;
 use terminal::{say, tell};
 
 use commands::{
-    bench, check, describe, design, draw, fmu, lists, measurement, replay, report, resume,
+    bench, check, describe, design, draw, fmu, lab, lists, measurement, replay, report, resume,
     run as run_command, scenes, schemas, shell, sweep,
 };
 
@@ -84,6 +84,7 @@ enum Verb {
     Compare(measurement::Compare),
     Calibrate(measurement::Calibrate),
     Predict(measurement::Predict),
+    NextMeasurement(measurement::NextMeasurement),
     Uncertainty(measurement::Uncertainty),
     Tornado(measurement::Tornado),
     Sweep(sweep::Arguments),
@@ -92,6 +93,7 @@ enum Verb {
     Describe(describe::Arguments),
     Design(design::Arguments),
     Draw(draw::Arguments),
+    Lab(lab::Arguments),
     Fmu(fmu::Arguments),
     Resolve(scenes::Resolve),
     Diff(scenes::Diff),
@@ -144,6 +146,9 @@ where
         Verb::Compare(arguments) => Some(("compare", measurement::options(&arguments)?)),
         Verb::Calibrate(arguments) => Some(("calibrate", measurement::options(&arguments)?)),
         Verb::Predict(arguments) => Some(("predict", measurement::options(&arguments)?)),
+        Verb::NextMeasurement(arguments) => {
+            Some(("next-measurement", measurement::options(&arguments)?))
+        }
         Verb::Uncertainty(arguments) => Some(("uncertainty", measurement::options(&arguments)?)),
         Verb::Tornado(arguments) => Some(("tornado", measurement::options(&arguments)?)),
         _ => None,
@@ -215,6 +220,7 @@ fn carry_out(
         Verb::Compare(_) => Err(measurement::elsewhere("compare")),
         Verb::Calibrate(_) => Err(measurement::elsewhere("calibrate")),
         Verb::Predict(_) => Err(measurement::elsewhere("predict")),
+        Verb::NextMeasurement(_) => Err(measurement::elsewhere("next-measurement")),
         Verb::Uncertainty(_) => Err(measurement::elsewhere("uncertainty")),
         Verb::Tornado(_) => Err(measurement::elsewhere("tornado")),
         Verb::Sweep(arguments) => sweep::sweep(arguments, interrupted),
@@ -223,6 +229,7 @@ fn carry_out(
         Verb::Describe(arguments) => describe::describe(arguments, interrupted),
         Verb::Design(arguments) => design::design(arguments, interrupted),
         Verb::Draw(arguments) => draw::draw(arguments, interrupted),
+        Verb::Lab(arguments) => lab::lab(arguments, interrupted),
         Verb::Fmu(arguments) => fmu::fmu(arguments, interrupted),
         Verb::Resolve(arguments) => scenes::resolve(arguments, interrupted),
         Verb::Diff(arguments) => scenes::diff(arguments, interrupted),

@@ -16,6 +16,8 @@ pub enum InstructionSet {
     Baseline,
     /// Two lanes of ARM processors, with product and sum in one.
     Neon,
+    /// Two lanes of browsers.
+    Simd128,
     /// Four lanes: AVX2 with product and sum in one (x86-64-v3).
     Avx2,
     /// Eight lanes: AVX-512 F, BW, CD, DQ and VL (x86-64-v4).
@@ -42,7 +44,13 @@ impl InstructionSet {
     pub const VARIABLE: &str = "CHAINDRIVE_INSTRUCTION_SET";
 
     /// All sets, from narrow to wide.
-    pub const ALL: [Self; 4] = [Self::Baseline, Self::Neon, Self::Avx2, Self::Avx512];
+    pub const ALL: [Self; 5] = [
+        Self::Baseline,
+        Self::Neon,
+        Self::Simd128,
+        Self::Avx2,
+        Self::Avx512,
+    ];
 
     /// Name in results and in the environment.
     pub const fn name(self) -> &'static str {
@@ -50,6 +58,7 @@ impl InstructionSet {
             Self::Baseline if cfg!(target_arch = "x86_64") => "sse2",
             Self::Baseline => "baseline",
             Self::Neon => "neon",
+            Self::Simd128 => "simd128",
             Self::Avx2 => "avx2",
             Self::Avx512 => "avx512",
         }
@@ -60,6 +69,7 @@ impl InstructionSet {
         Self::ALL.into_iter().filter(|set| match set {
             Self::Baseline => true,
             Self::Neon => cfg!(target_arch = "aarch64"),
+            Self::Simd128 => cfg!(target_arch = "wasm32"),
             Self::Avx2 | Self::Avx512 => cfg!(target_arch = "x86_64"),
         })
     }
@@ -122,6 +132,10 @@ impl Registers {
             InstructionSet::Avx512 => pulp::x86::V4::try_new().map(|it| Self(Arch::V4(it))),
             #[cfg(target_arch = "aarch64")]
             InstructionSet::Neon => pulp::aarch64::Neon::try_new().map(|it| Self(Arch::Neon(it))),
+            #[cfg(target_arch = "wasm32")]
+            InstructionSet::Simd128 => {
+                pulp::wasm::Simd128::try_new().map(|it| Self(Arch::Simd128(it)))
+            }
             _ => None,
         }
     }
@@ -139,6 +153,8 @@ impl Registers {
             Arch::V3(_) => InstructionSet::Avx2,
             #[cfg(target_arch = "aarch64")]
             Arch::Neon(_) => InstructionSet::Neon,
+            #[cfg(target_arch = "wasm32")]
+            Arch::Simd128(_) => InstructionSet::Simd128,
             _ => InstructionSet::Baseline,
         }
     }
@@ -153,6 +169,8 @@ impl Registers {
             Arch::V3(simd) => Simd::vectorize(simd, op),
             #[cfg(target_arch = "aarch64")]
             Arch::Neon(simd) => Simd::vectorize(simd, op),
+            #[cfg(target_arch = "wasm32")]
+            Arch::Simd128(simd) => Simd::vectorize(simd, op),
             // The arms stand here, and not in the library, so that no loop is compiled for its single lane.
             _ => op.with_simd(Scalar128b),
         }

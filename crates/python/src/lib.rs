@@ -16,6 +16,7 @@ mod errors;
 mod fmu;
 mod friction;
 mod kinematics;
+mod lab;
 mod law;
 mod live;
 mod new_file;
@@ -56,6 +57,8 @@ mod core {
     use crate::friction::Friction;
     #[pymodule_export]
     use crate::kinematics::{centre_distance_for, links_for, polygon_action};
+    #[pymodule_export]
+    use crate::lab::lab_page;
     #[pymodule_export]
     use crate::law::Law;
     #[pymodule_export]

@@ -2,7 +2,7 @@
 
 use chaindrive::scene::tunable_places;
 use chaindrive::{Description, Run, Scene, assemble, design, draw, precision};
-use serde_json::json;
+use serde_json::{Value, json};
 use wasm_bindgen::prelude::*;
 
 use crate::thrown::{of_scene, thrown};
@@ -59,6 +59,22 @@ impl Drive {
     pub fn replace(&self, path: &str, json: &str) -> Result<Self, JsValue> {
         let value = serde_json::from_str(json).map_err(thrown)?;
         Self::of(self.scene.replace_json(path, &value).map_err(of_scene)?)
+    }
+
+    /// A drive with several values replaced, which may be right together only, as teeth and links.
+    ///
+    /// @param changes JSON, `[[path, value], …]`, as `replace` has them
+    ///
+    /// # Errors
+    /// As the constructor.
+    #[wasm_bindgen(js_name = replaceAll)]
+    pub fn replace_all(&self, changes: &str) -> Result<Self, JsValue> {
+        let changes: Vec<(String, Value)> = serde_json::from_str(changes).map_err(thrown)?;
+        let mut scene = self.scene.clone();
+        for (path, value) in changes {
+            scene = scene.replace_json(&path, &value).map_err(of_scene)?;
+        }
+        Self::of(scene)
     }
 
     /// The text that reproduces the drive.

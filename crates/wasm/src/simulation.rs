@@ -1,6 +1,6 @@
 //! A drive in motion.
 
-use chaindrive::{Control, Course, Method, Run, RunIn};
+use chaindrive::{Control, Course, Run, RunIn};
 use serde_json::json;
 use wasm_bindgen::prelude::*;
 
@@ -148,16 +148,9 @@ impl Simulation {
     pub fn statistics(&self) -> String {
         let counts = self.moving.statistics();
         let method = self.moving.method();
-        let step = match method {
-            Method::DormandPrince { .. } => None,
-            Method::Verlet { step }
-            | Method::Rk4 { step }
-            | Method::ImplicitDamping { step }
-            | Method::GeneralizedAlpha { step, .. } => Some(step),
-        };
         json!({
             "method": chaindrive::Stepping::from(method).name(),
-            "step": step,
+            "step": method.step(),
             "steps": counts.steps,
             "evaluations": counts.evaluations,
             "rejections": counts.rejections,

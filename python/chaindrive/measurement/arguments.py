@@ -25,6 +25,7 @@ __all__ = [
     "place_of_output",
     "ranges_of",
     "record_of",
+    "rig_of",
     "rows_of",
     "runs_of",
 ]
@@ -37,19 +38,24 @@ _EXAMPLE = "chain.stiffness=10 MN/m"
 
 def record_of(options: Mapping[str, Any]) -> xr.Dataset:
     """Return the measurement, read as the rig file says."""
-    rig: dict[str, Any] = {}
-    if options["rig"] is not None:
-        place = Path(options["rig"])
-        try:
-            rig = tomllib.loads(place.read_text(encoding="utf-8"))
-        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-            raise MeasurementError(f"{place}: this is no TOML: {error}", place) from error
-        known = (*_RIG, *_RIG_TEXT)
-        strange = [it for it in rig if it not in known]
-        if strange:
-            message = f"{place}: a rig has no {strange[0]!r}"
-            raise MeasurementError(message, place, f"it has {', '.join(known)}")
-    return measured(options["data"], **rig)
+    return measured(options["data"], **rig_of(options))
+
+
+def rig_of(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the arguments of `measured` in the rig file; none where none is given."""
+    if options["rig"] is None:
+        return {}
+    place = Path(options["rig"])
+    try:
+        rig = tomllib.loads(place.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise MeasurementError(f"{place}: this is no TOML: {error}", place) from error
+    known = (*_RIG, *_RIG_TEXT)
+    strange = [it for it in rig if it not in known]
+    if strange:
+        message = f"{place}: a rig has no {strange[0]!r}"
+        raise MeasurementError(message, place, f"it has {', '.join(known)}")
+    return rig
 
 
 def drive_of(options: Mapping[str, Any]) -> Drive:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import replace
 from os import PathLike
 from typing import Any, NamedTuple
@@ -22,6 +23,7 @@ from chaindrive.measurement.experiment import Experiment, begun
 from chaindrive.measurement.fitting import Fit, Optimum, Worth, differs
 from chaindrive.measurement.free import FreeParameter, free_parameters, open_to
 from chaindrive.measurement.identifiability import identifiability
+from chaindrive.measurement.profiling import Profile, profiled
 from chaindrive.measurement.provenance import fitted_drive
 from chaindrive.measurement.series import channel_names
 from chaindrive.measurement.telling import texts, told_calibration
@@ -29,6 +31,7 @@ from chaindrive.measurement.validating import Kept, validated
 from chaindrive.progress import told
 from chaindrive.settings import Quantity
 from chaindrive.simulation import simulate
+from chaindrive.sweeping import checked_workers
 
 __all__ = ["calibrate"]
 
@@ -63,10 +66,12 @@ def calibrate(
     validation: float = 0.25,
     starts: int = 5,
     level: float = 0.95,
+    profiles: bool | Iterable[str] = False,
     until: Quantity | None = None,
     shaft: str | None = None,
     store: str | PathLike[str] | None = None,
     jobs: int | None = None,
+    executor: Executor | None = None,
     progress: bool | Callable[[float], object] = False,
 ) -> xr.Dataset:
     """Fit parameters of a drive to measurements, with intervals of all errors; or refuse.
@@ -102,6 +107,10 @@ def calibrate(
         with twice as many points for each parameter of the scene. 1: the drive's own alone.
     level
         Level of the intervals [–].
+    profiles
+        True, or paths: these parameters are held at six places each while all others are fitted
+        again, which gives intervals that need not be symmetric. Takes a few fits for each, and the
+        loss ``"linear"``.
     until
         Length of the runs [s]; that of the fitted part, and at most a second, when absent.
     shaft
@@ -109,8 +118,9 @@ def calibrate(
     store
         Folder in which every run is kept under the bits of its parameters: the same call goes on
         there, takes the same path and computes nothing twice. In memory when absent.
-    jobs
-        Runs at a time, as in `sweep`; the numbers do not depend on it.
+    jobs, executor
+        Runs at a time, or who computes them, such as a ``ProcessPoolExecutor`` or a Dask cluster,
+        as in `sweep`; the numbers do not depend on it.
     progress
         As in `sweep`; its share is a guess, for nobody knows how many steps a fit takes.
 
@@ -123,7 +133,10 @@ def calibrate(
         ``feature_error`` [unit of the feature] and ``residual`` (difference over its error)
         (feature,), and the same of the part that was kept, ``kept_measured`` and so on
         (kept_feature,). ``optimum`` (valley, parameter) [SI] with ``optimum_chi2`` (valley,).
-        ``eigenvalue`` (direction,) of the information at the start, see `check_data`. Attributes:
+        ``eigenvalue`` (direction,) of the information at the start, see `check_data`. With
+        `profiles` ``profile_value`` [SI] and ``profile_chi2``, what χ² exceeds its least by [–]
+        (parameter, profile_point), and ``profile_lower`` and ``profile_upper`` [SI] (parameter,),
+        infinite where a bound comes before. Attributes:
         ``verdict``, ``"calibrated"`` or ``"refused"``, with the ``reasons`` in words; ``chi2``,
         ``dof``, ``p_value``, ``validation_p_value``; ``method``, ``step`` [s], ``run_in`` [s] of
         all evaluations; ``computed``, the number of runs that were not in the store; a ``summary``
@@ -152,11 +165,14 @@ def calibrate(
     """
     drives, records = _listed(drive, data)
     _check(loss, validation, starts, level)
+    checked_workers(jobs, executor)
     keep = RunStore(store)
+    workers = {"jobs": jobs, "executor": executor}
     experiments, parameters = _experiments(
-        drives, records, free, (validation, keep, until, shaft, jobs)
+        drives, records, free, (validation, keep, until, shaft, workers)
     )
     known = _priors(priors or {}, parameters)
+    asked = _profiled(profiles, parameters, loss)
     with told(progress, "fit") as tell:
         steps = _Steps(tell, 12 + starts)
         fit = Fit(experiments, parameters, known, loss, steps)
@@ -178,7 +194,9 @@ def calibrate(
         if settled is not None:
             reasons += _reasons(settled)
             kept = validated(settled.fit, settled.optima[0], settled.worth, _LEVEL)
-    found = _dataset(settled, fit, before.eigenvalues, kept, (reasons, level))
+        found = _dataset(settled, fit, before.eigenvalues, kept, (reasons, level))
+        if asked and settled is not None:
+            found = found.assign(_profiles(settled, asked, found, level))
     found.attrs["computed"] = keep.computed
     if settled is not None and not reasons:
         found.attrs |= _scenes(found, settled.fit, records, level)
@@ -228,10 +246,10 @@ def _experiments(
     drives: Sequence[Drive],
     records: Sequence[xr.Dataset],
     free: Mapping[str, tuple[Any, Any]],
-    how: tuple[float, RunStore, Quantity | None, str | None, int | None],
+    how: tuple[float, RunStore, Quantity | None, str | None, Mapping[str, Any]],
 ) -> tuple[list[Experiment], list[FreeParameter]]:
     """Return one experiment a record, and the parameters that they share."""
-    share, store, until, shaft, jobs = how
+    share, store, until, shaft, workers = how
     by_path: dict[str, FreeParameter] = {}
     found = []
     for drive, data in zip(drives, records, strict=True):
@@ -246,7 +264,7 @@ def _experiments(
         # The first record says what is wrong with it.
         free_parameters(drives[0], records[0], {path: free[path] for path in lost})
     order = [by_path[path] for path in free]
-    experiments = [begun(*it, share, store, (until, shaft, jobs)) for it in found]
+    experiments = [begun(*it, share, store, (until, shaft, workers)) for it in found]
     return experiments, order
 
 
@@ -290,6 +308,25 @@ def _priors(
             raise MeasurementError(message, path, "positive [SI]")
         found[path] = (mean, deviation)
     return found
+
+
+def _profiled(
+    profiles: bool | Iterable[str], parameters: Sequence[FreeParameter], loss: str
+) -> list[int]:
+    """Return which parameters have a profile."""
+    paths = [it.path for it in parameters]
+    if isinstance(profiles, bool):
+        wanted = paths if profiles else []
+    else:
+        wanted = [profiles] if isinstance(profiles, str) else list(profiles)
+    for path in wanted:
+        if path not in paths:
+            message = f"profiles: {path!r} is not free"
+            raise MeasurementError(message, path, f"free are {', '.join(paths)}")
+    if wanted and loss != "linear":
+        message = f"profiles: a fit with the loss {loss!r} has none"
+        raise MeasurementError(message, "profiles", "loss='linear'")
+    return [paths.index(path) for path in wanted]
 
 
 def _inside(fit: Fit) -> _Floats:
@@ -431,6 +468,32 @@ def _dataset(
         }
         coordinates["kept_feature"] = texts(kept.names)
     return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+def _profiles(
+    settled: Settled, asked: Sequence[int], found: xr.Dataset, level: float
+) -> dict[str, Any]:
+    """Return profiles as variables of the result; none of parameters that were not asked for."""
+    made: dict[int, Profile] = {}
+    t = extra("scipy.stats", "intervals").t
+    for n in asked:
+        freedom = min(float(settled.worth.freedom[n]), 1e9)
+        error = float(found["error"][n])
+        own = float(t.ppf(0.5 + 0.5 * level, freedom))
+        made[n] = profiled(settled.fit, settled.optima[0], n, error, own)
+    points = max(it.values.size for it in made.values())
+    table = np.full((2, found.sizes["parameter"], points), math.nan)
+    ends = np.full((2, found.sizes["parameter"]), math.nan)
+    for n, it in made.items():
+        table[:, n] = it.values, it.chi2
+        ends[:, n] = it.lower, it.upper
+    two = ("parameter", "profile_point")
+    return {
+        "profile_value": (two, table[0]),
+        "profile_chi2": (two, table[1], {"units": "1"}),
+        "profile_lower": ("parameter", ends[0]),
+        "profile_upper": ("parameter", ends[1]),
+    }
 
 
 def _scenes(

@@ -203,7 +203,8 @@ def _beside(
     unit = str(data[name].attrs["units"])
     ours = float(np.nanmean(data[name].to_numpy()))
     if quantity is None:
-        return Corresponding(name, None, unit, ours, math.nan, "corresponds to no quantity")
+        problem = "" if "turns" in data[name].attrs else "corresponds to no quantity"
+        return Corresponding(name, None, unit, ours, math.nan, problem)
     sensor = sensor_of(data, name)
     if quantity.is_relative:
         series = measured_series(data, name, None)
@@ -321,18 +322,29 @@ def _channels(
             it.unit or "–",
             number(it.measured),
             number(it.simulated),
-            it.problem or "fits",
+            it.problem or _told(it, data),
         ]
         for it in rows
     ]
     words = [f"The record: {data.attrs['findings_note']}."] if data.attrs["findings_note"] else []
     words += [f"{it}." for it in findings]
+    unknown = [it.name for it in rows if it.quantity is None and it.problem]
+    if unknown:
+        words.append(
+            f"Say in `channels` what {', '.join(unknown)} is, such as "
+            f"{{{unknown[0]!r}: 'QUANTITY[PLACE]'}}; `chaindrive channels` lists quantities."
+        )
     return {
         "title": f"what {data.attrs['measured_from']} can say",
         "columns": ["channel", "quantity", "unit", "mean measured", "of the drive", "so"],
         "rows": told,
         "sentences": words,
     }
+
+
+def _told(it: Corresponding, data: xr.Dataset) -> str:
+    turns = data[it.name].attrs.get("turns")
+    return f"tells how {turns} turns" if it.quantity is None and turns else "fits"
 
 
 def _identified(

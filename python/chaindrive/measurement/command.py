@@ -29,7 +29,7 @@ from chaindrive.errors import (
 from chaindrive.measurement.arguments import drive_of, is_seen, ranges_of, record_of, rows_of
 from chaindrive.measurement.checking import check_data, run_for
 from chaindrive.measurement.comparison import compare
-from chaindrive.measurement.fit_command import calibrated, foretold
+from chaindrive.measurement.fit_command import calibrated, foretold, proposed
 from chaindrive.reporting import report
 from chaindrive.results import open_result
 
@@ -44,7 +44,8 @@ def command(verb: str, options: Mapping[str, Any]) -> int:
     Parameters
     ----------
     verb
-        ``check-data``, ``compare``, ``calibrate``, ``predict``, ``uncertainty`` or ``tornado``.
+        ``check-data``, ``compare``, ``calibrate``, ``predict``, ``next-measurement``,
+        ``uncertainty`` or ``tornado``.
     options
         Its options by name, as the core has read them.
     """
@@ -208,6 +209,7 @@ _VERBS = {
     "compare": _compare,
     "calibrate": calibrated,
     "predict": foretold,
+    "next-measurement": proposed,
     "uncertainty": spread,
     "tornado": ranked,
 }

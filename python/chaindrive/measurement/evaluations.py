@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 import os
 import struct
@@ -14,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from chaindrive import _core
+from chaindrive._core import NewFile
 from chaindrive.drive import Drive
 from chaindrive.errors import MeasurementError, SimulationError
 from chaindrive.measurement.sensitivities import as_run
@@ -22,6 +24,9 @@ from chaindrive.sweeping import sweep
 __all__ = ["Evaluations", "RunStore"]
 
 Row = Mapping[str, float]
+
+#: Variants of a part that an executor computes: what is lost when the program is killed [–].
+_PART = 32
 
 
 class RunStore:
@@ -74,13 +79,11 @@ class RunStore:
             "coords": [str(name) for name in run.coords],
             "attrs": _plain(run.attrs),
         }
-        # Beside its place and then there: a fit that is killed leaves whole files only.
-        file = self.folder / f"{key}.npz"
-        beside = file.with_suffix(f".{os.getpid()}.part")
         arrays: dict[str, Any] = {name: run[name].to_numpy() for name in names}
-        with beside.open("wb") as stream:
-            np.savez(stream, about=np.array(json.dumps(about)), **arrays)
-        beside.replace(file)
+        made = io.BytesIO()
+        np.savez(made, about=np.array(json.dumps(about)), **arrays)
+        # Put there whole: a fit that is killed leaves no broken file.
+        NewFile(self.folder / f"{key}.npz").write(made.getvalue())
 
     def kept(self, of: Any, compute: Callable[[], xr.Dataset]) -> xr.Dataset:
         """Return the run of what identifies it, and compute it where it is not there."""
@@ -101,10 +104,11 @@ class Evaluations:
         run: xr.Dataset,
         settings: Mapping[str, Any],
         store: RunStore,
-        jobs: int | None,
+        workers: Mapping[str, Any],
     ) -> None:
         self.drive, self.run, self.store = drive, run, store
-        self._jobs = jobs
+        #: ``jobs`` and ``executor``, as `sweep` takes them.
+        self.workers = workers
         recorded = sorted(str(name) for name in run.data_vars if "time" in run[name].dims)
         self.settings: dict[str, Any] = {
             "until": float(run.attrs["until"]),
@@ -119,7 +123,7 @@ class Evaluations:
     def beside(self, run: xr.Dataset) -> Evaluations:
         """Return the same with method, step and run-in of another run."""
         chosen = {"method": run.attrs["method"], "step": float(run.attrs["step"])}
-        return Evaluations(self.drive, run, chosen, self.store, self._jobs)
+        return Evaluations(self.drive, run, chosen, self.store, self.workers)
 
     def runs(self, rows: Sequence[Row], *, may_fail: bool = False) -> list[xr.Dataset | None]:
         """Return the run of every row of values by path; None for one that fails, if it may.
@@ -135,8 +139,11 @@ class Evaluations:
         keys = [self._key(row) for row in rows]
         found = {key: self.store.get(key) for key in dict.fromkeys(keys)}
         wanted = {key: row for key, row in zip(keys, rows, strict=True) if found[key] is None}
-        if wanted:
-            found |= self._computed(wanted, may_fail)
+        # What a part has computed is kept before the next one begins.
+        size = _PART if self.workers["executor"] else self.workers["jobs"] or os.cpu_count() or 1
+        pending = list(wanted.items())
+        for begin in range(0, len(pending), size):
+            found |= self._computed(dict(pending[begin : begin + size]), may_fail)
         return [found[key] for key in keys]
 
     def _key(self, row: Row) -> str:
@@ -149,7 +156,7 @@ class Evaluations:
         rows = list(wanted.values())
         design = {path: [row[path] for row in rows] for path in rows[0]}
         try:
-            swept = sweep(self.drive, design=design, jobs=self._jobs, **self.settings)
+            swept = sweep(self.drive, design=design, **self.workers, **self.settings)
         except KeyboardInterrupt as stop:
             partly = vars(stop).get("result")
             if partly is not None:

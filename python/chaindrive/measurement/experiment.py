@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -145,7 +145,7 @@ def begun(
     parameters: Sequence[FreeParameter],
     share: float,
     store: RunStore,
-    how: tuple[Quantity | None, str | None, int | None],
+    how: tuple[Quantity | None, str | None, Mapping[str, Any]],
 ) -> Experiment:
     """Return an experiment, with everything that is chosen automatically chosen and frozen.
 
@@ -162,9 +162,9 @@ def begun(
     store
         Where runs are kept.
     how
-        Length of the runs [s], reference shaft, jobs.
+        Length of the runs [s], reference shaft, ``jobs`` and ``executor`` as `sweep` takes them.
     """
-    until, shaft, jobs = how
+    until, shaft, workers = how
     fitted, kept = parted(data, share)
     length = None if until is None else str(until)
     channels = [(name, dict(fitted[name].attrs)) for name in channel_names(data)]
@@ -189,5 +189,5 @@ def begun(
     middle = {it.path: it.around(0.0)[1] for it in scene}
     ends = [middle | {it.path: end} for it in scene for end in (it.low, it.high)]
     settings = settings_for(drive, run, ends)
-    evaluations = Evaluations(drive, run, settings, store, jobs)
+    evaluations = Evaluations(drive, run, settings, store, workers)
     return Experiment(drive, data, list(parameters), run, reads, looks, evaluations, starts(drive))

@@ -1,4 +1,4 @@
-"""The commands `calibrate` and `predict`; the answer of the first is what the second reads."""
+"""The commands `calibrate`, `predict`, `next-measurement`: the first prints what they read."""
 
 from __future__ import annotations
 
@@ -15,20 +15,23 @@ from chaindrive.assumptions.outputs import OUTPUTS
 from chaindrive.errors import MeasurementError
 from chaindrive.measurement.arguments import (
     drive_of,
+    is_seen,
     number_of,
     pairs_of,
     place_of_output,
     ranges_of,
     record_of,
+    rig_of,
     rows_of,
     runs_of,
 )
 from chaindrive.measurement.calibration import calibrate
 from chaindrive.measurement.predicting import predict
+from chaindrive.measurement.proposing import next_measurement
 from chaindrive.measurement.telling import texts
 from chaindrive.reporting import report
 
-__all__ = ["calibrated", "foretold"]
+__all__ = ["calibrated", "foretold", "proposed"]
 
 _COLUMNS = ("start", "estimate", "error", "lower", "upper", "freedom", "low", "high")
 _FEATURES = ("measured", "simulated", "feature_error", "residual")
@@ -117,6 +120,52 @@ def foretold(options: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
     ]
     about = {name: found.attrs[name] for name in ("reach", "level", *_RUNS, "until")}
     return str(found.attrs["summary"]), about | {"outputs": rows}
+
+
+def proposed(options: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
+    """Tell which measurement would settle most."""
+    candidates = {it: it for it in options["candidate"]} | rig_of(options).get("channels", {})
+    points: dict[str, dict[str, Any]] = {}
+    example = "slow:sprockets.driver.motion.speed=150 rpm"
+    for given in options["excitation"]:
+        name, sign, change = given.partition(":")
+        if not (name.strip() and sign):
+            message = f"--excitation {given}: this is no name and what belongs to it"
+            raise MeasurementError(message, "excitation", f'such as --excitation "{example}"')
+        values = pairs_of("excitation", [change], example)
+        points.setdefault(name.strip(), {}).update(
+            {path: number_of(text) for path, text in values.items()}
+        )
+    lengths = {name: options[name] for name in ("rate", "record", "until")}
+    found = next_measurement(
+        drive_of(options),
+        ranges_of("free", options["free"]),
+        candidates,
+        settle=options["settle"],
+        known=None if options["known"] is None else _fit_of(options["known"]),
+        excitations=points or None,
+        progress=is_seen(),
+        **{name: number_of(it) for name, it in lengths.items() if it is not None},
+    )
+    targets = found["target"].to_numpy().tolist()
+    rows = [
+        {
+            "candidate": one["candidate"].item(),
+            "excitation": one["excitation"].item(),
+            "shrinking": float(one["shrinking"]),
+            "length": float(one["length"]),
+            "after": dict(zip(targets, one["after"].to_numpy().tolist(), strict=True)),
+        }
+        for one in (
+            found.isel(excitation=at[0], candidate=at[1])
+            for at in np.ndindex(found["shrinking"].shape)
+        )
+    ]
+    about = ("best_candidate", "best_excitation", "best_length", "record")
+    return str(found.attrs["summary"]), {name: found.attrs[name] for name in about} | {
+        "targets": rows_of(found, "target", ("before",)),
+        "candidates": sorted(rows, key=lambda it: it["shrinking"]),
+    }
 
 
 def _fit_of(file: str) -> xr.Dataset:

@@ -177,13 +177,20 @@ class Fit:
         # Of several records a point counts where each of its runs reached its end.
         return [None if any(it is None for it in row) else np.concatenate([*row]) for row in rows]
 
-    def derivatives(self, x: _Floats, factor: float = 1.0, design: int = 0) -> _Floats:
+    def derivatives(
+        self,
+        x: _Floats,
+        factor: float = 1.0,
+        design: int = 0,
+        among: Sequence[int] | None = None,
+    ) -> _Floats:
         """Return the change of features with half ranges at a point [SI], (features, p).
 
-        ``∂y/∂θ ≈ (y(θ + h) − y(θ − h)) / 2h``, with common random numbers, within the bounds.
+        ``∂y/∂θ ≈ (y(θ + h) − y(θ − h)) / 2h``, with common random numbers, within the bounds. Of
+        some parameters alone where `among` names them.
         """
         points, widths = [], []
-        for n in range(x.size):
+        for n in range(x.size) if among is None else among:
             above, below = x.copy(), x.copy()
             step = factor * self.steps[n] * self.half[n]
             above[n] = min(x[n] + step, self.high[n])
@@ -293,6 +300,35 @@ class Fit:
             x = found.x
         return Optimum(found.x, float(found.cost), found.jac * self.half)
 
+    def held(self, start: _Floats, n: int) -> Optimum:
+        """Return the optimum of all parameters but one, which stays where a start has it.
+
+        Of squares alone: a robust loss is not asked for.
+        """
+        among = [it for it in range(start.size) if it != n]
+        if not among:
+            residual = self.residuals(start)
+            return Optimum(start, 0.5 * float(residual @ residual), np.zeros((residual.size, 0)))
+
+        def whole(part: _Floats) -> _Floats:
+            x = start.copy()
+            x[among] = part
+            return x
+
+        low, high, half = self.low[among], self.high[among], self.half[among]
+        found = extra("scipy.optimize", "fits").least_squares(
+            lambda part: self.residuals(whole(part)),
+            np.clip(start[among], low + 1e-3 * half, high - 1e-3 * half),
+            jac=lambda part: self._whitened(whole(part), self._root, among),
+            bounds=(low, high),
+            x_scale=half,
+            ftol=_ENOUGH,
+            xtol=_ENOUGH,
+            gtol=_ENOUGH,
+            max_nfev=_LONGEST,
+        )
+        return Optimum(whole(found.x), float(found.cost), found.jac * half)
+
     def worth(self, at: Optimum) -> Worth:
         """Return covariance, intervals and test of an optimum."""
         mean, noise = self.replicated(at.x)
@@ -363,10 +399,13 @@ class Fit:
     def _rooted(self, jacobian: _Floats) -> _Floats:
         return np.asarray(np.linalg.solve(self._root, jacobian[self.known]), dtype=np.float64)
 
-    def _whitened(self, x: _Floats, root: _Floats) -> _Floats:
-        slopes = [self.derivatives(x, 1.0, design) for design in range(self.designs)]
+    def _whitened(self, x: _Floats, root: _Floats, among: Sequence[int] | None = None) -> _Floats:
+        """Return derivatives of whitened residuals by parameters [SI], of some of them alone."""
+        slopes = [self.derivatives(x, 1.0, design, among) for design in range(self.designs)]
         rows = np.linalg.solve(root, np.mean(slopes, axis=0)[self.known])
-        found: _Floats = self.with_priors(rows, np.eye(len(rows)))[0] / self.half
+        own = slice(None) if among is None else among
+        priors = self.with_priors(np.zeros((0, x.size)), np.zeros((0, 0)))[0][:, own]
+        found: _Floats = np.concatenate([rows, priors]) / self.half[own]
         return found
 
 

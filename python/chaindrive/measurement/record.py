@@ -19,7 +19,7 @@ from chaindrive.measurement.formats import read_raw
 from chaindrive.measurement.raw import RawChannel, RawRecord
 from chaindrive.measurement.sensor import Sensor
 from chaindrive.measurement.time_base import Finding, intervals, sampling_rate, sorted_in_time
-from chaindrive.measurement.turning import Turning, angle_by, turning_by
+from chaindrive.measurement.turning import Speed, Turning, angle_by, turning_by
 from chaindrive.measurement.units import unit_of
 from chaindrive.settings import Quantity
 
@@ -86,8 +86,9 @@ def measured(
     -------
     xarray.Dataset
         A variable a channel, (time,), with ``units``, ``long_name``, the name ``in_file`` and the
-        ``unit_in_file``, ``sampling_rate`` [Hz], its ``quantity`` and its ``sensor`` (JSON). What
-        has another time base stands along ``time_2`` and so on. With `turns` the angles of shafts
+        ``unit_in_file``, ``sampling_rate`` [Hz], its ``quantity``, its ``sensor`` (JSON), and the
+        shaft whose angle it tells (``turns``). What has another time base stands along ``time_2``
+        and so on. With `turns` the angles of shafts
         are ``sprocket_angle`` (time, sprocket) [rad], so that `chaindrive.analysis.order_spectrum`
         takes the dataset as a run. Time begins at zero. Units that no drive has, such as volts,
         stay what they are. Attributes: ``measured_from``, ``findings`` (their names),
@@ -323,6 +324,10 @@ def _angles(
         return
     first = min(float(np.nanmin(times)) for _, times in timed.values())
     clocked = {name: (it, times - first) for name, (it, times) in timed.items()}
+    for name, turning in how.items():
+        source = turning.speed if isinstance(turning, Speed) else turning.channel
+        if source in variables:
+            variables[str(source)].attrs["turns"] = name
     for base, times in bases.items():
         columns = []
         for name, turning in how.items():

@@ -120,13 +120,17 @@ def sensitivities(
         if tell is not None:
             tell(before + 0.5 * share)
 
+    # The ends of the longest steps are the stiffest; at which phase they start does not matter.
+    middles = {it.path: it.around(_COARSE)[1] for it in scene}
+    ends = [middles | {it.path: end} for it in scene for end in it.around(_COARSE)[::2]]
+    settings = settings_for(drive, run, ends)
     coarse = dict.fromkeys((it.path for it in scene), _COARSE)
-    long = _slopes(drive, run, how, scene, coarse, lambda share: part(share, 0.0))
+    long = _slopes(drive, run, how, scene, coarse, settings, lambda share: part(share, 0.0))
     steps = {
         path: min(max(1.0 / max(size(it.mean), 1e-9), _LEAST), 0.5 * _COARSE)
         for path, it in long.items()
     }
-    short = _slopes(drive, run, how, scene, steps, lambda share: part(share, 0.5))
+    short = _slopes(drive, run, how, scene, steps, settings, lambda share: part(share, 0.5))
     chosen, bending = [], []
     for it in parameters:
         if it.is_of_sensor:
@@ -186,6 +190,7 @@ def _slopes(
     how: Sequence[Reading],
     parameters: Sequence[FreeParameter],
     steps: Mapping[str, float],
+    settings: Mapping[str, Any],
     tell: Callable[[float], object],
 ) -> dict[str, _Slopes]:
     """Return the slopes of every parameter by one step each, of two designs."""
@@ -209,7 +214,7 @@ def _slopes(
         every=float(run.attrs["every"]),
         record=recorded,
         progress=tell,
-        **settings_for(drive, run, rows),
+        **settings,
     )
     failed = [str(it) for it in found["error"].to_numpy() if it]
     if failed:

@@ -12,7 +12,12 @@ from __future__ import annotations
 from chaindrive.plot.assumed import sobol_indices, tornado
 from chaindrive.plot.curves import tension, work_precision
 from chaindrive.plot.drive import frame, layout, svg
-from chaindrive.plot.fitted import fit_correlations, fit_intervals, fit_residuals
+from chaindrive.plot.fitted import (
+    fit_correlations,
+    fit_intervals,
+    fit_profile,
+    fit_residuals,
+)
 from chaindrive.plot.impulses import impulse_spectrum
 from chaindrive.plot.measured import (
     compared_orders,
@@ -56,6 +61,7 @@ __all__ = [
     "elongation",
     "fit_correlations",
     "fit_intervals",
+    "fit_profile",
     "fit_residuals",
     "frame",
     "impacts",

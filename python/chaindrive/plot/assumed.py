@@ -11,6 +11,7 @@ from chaindrive.errors import ParameterError
 from chaindrive.plot.axes import drawing, legend_below
 from chaindrive.plot.docstrings import completed
 from chaindrive.plot.scheme import CURVES, LIMIT
+from chaindrive.plot.units import rounded
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,13 +51,19 @@ def tornado(found: xr.Dataset, output: str | None = None, *, ax: Axes | None = N
     # The last one stands on top.
     order = np.argsort(np.nan_to_num(np.abs(share)).max(axis=1), kind="stable")
     places = np.arange(len(order))
+    # Ends that move it the same way stand above each other, not one before the other.
+    alike = share[order, 0] * share[order, 1] > 0.0
     with drawing(ax) as ax:
         for end, label in enumerate(("lower end of the range", "upper end")):
-            look: dict[str, Any] = {"color": CURVES[end], "alpha": 0.8, "height": 0.6}
+            look: dict[str, Any] = {"color": CURVES[end], "alpha": 0.8}
             interval = np.nan_to_num(width[order, end])
             shown: dict[str, Any] = {"xerr": interval, "error_kw": {"lw": 0.8, "ecolor": LIMIT}}
-            ax.barh(places, share[order, end], label=label, **look, **shown)
+            at = places + np.where(alike, 0.15 - 0.3 * end, 0.0)
+            height = np.where(alike, 0.3, 0.6)
+            ax.barh(at, share[order, end], height=height, label=label, **look, **shown)
         _name(ax, own, own["assumption"].to_numpy()[order], "change [%]")
+        value = rounded(float(own["value"]), str(own["unit"].item()))
+        ax.set_title(f"{own['output'].item()}: {value}")
     return ax
 
 

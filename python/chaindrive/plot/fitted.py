@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from chaindrive.errors import ParameterError
+from chaindrive.extras import extra
 from chaindrive.plot.axes import colour_bar, drawing, legend_below
 from chaindrive.plot.docstrings import completed
 from chaindrive.plot.scheme import CURVES, LIMIT, MARK, STEEL
@@ -15,7 +16,7 @@ from chaindrive.plot.scheme import CURVES, LIMIT, MARK, STEEL
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["fit_correlations", "fit_intervals", "fit_residuals"]
+__all__ = ["fit_correlations", "fit_intervals", "fit_profile", "fit_residuals"]
 
 #: Errors beyond which a residual is marked [–]: 1 % of normal ones.
 _FAR = 2.58
@@ -91,6 +92,61 @@ def fit_correlations(fit: xr.Dataset, *, ax: Axes | None = None) -> Axes:
         ax.set_yticks(places, short)
         ax.invert_yaxis()
         ax.set_xlabel("parameter")
+    return ax
+
+
+@completed()
+def fit_profile(fit: xr.Dataset, parameter: str | None = None, *, ax: Axes | None = None) -> Axes:
+    """Draw what a fit leaves where one parameter is held and all others are fitted again.
+
+    A parabola is what a straight model would leave. The interval is where the curve is below t².
+
+    Parameters
+    ----------
+    fit
+        What ``chaindrive.calibrate(…, profiles=True)`` returned.
+    parameter
+        Its path; the first that has a profile when absent.
+
+    Raises
+    ------
+    ParameterError
+        This is no fit, or it has no such profile.
+    """
+    _checked(fit)
+    names = [str(it) for it in fit["parameter"].to_numpy()]
+    has = []
+    if "profile_chi2" in fit:
+        known = np.isfinite(fit["profile_chi2"].to_numpy()).any(axis=1)
+        has = [name for name, it in zip(names, known, strict=True) if it]
+    if not has or (parameter is not None and parameter not in has):
+        message = f"there is no profile of {parameter or 'any parameter'}"
+        raise ParameterError(message, "parameter", "chaindrive.calibrate(…, profiles=True)")
+    own = fit.isel(parameter=names.index(parameter or has[0]))
+    middle, error = float(own["estimate"]), float(own["error"])
+    # The interval by a straight model is ± t errors.
+    wide = (float(own["upper"]) - middle) / error
+    at, chi2 = own["profile_value"].to_numpy(), own["profile_chi2"].to_numpy()
+    known = np.isfinite(chi2)
+    line = np.linspace(at[known][0], at[known][-1], 200)
+    curve = extra("scipy.interpolate", "plots of profiles").PchipInterpolator(
+        at[known], np.sign(at[known] - middle) * np.sqrt(chi2[known])
+    )
+    with drawing(ax) as ax:
+        straight = ((line - middle) / error) ** 2
+        ax.plot(line, straight, "--", color=STEEL, label="straight model")
+        ax.plot(line, curve(line) ** 2, color=CURVES[0], label="profile")
+        ax.plot(at[known], chi2[known], "o", color=CURVES[0])
+        limit = f"t² at {100 * fit.attrs['level']:g} %"
+        ax.axhline(wide**2, color=LIMIT, lw=0.8, label=limit)
+        ends = [float(own[name]) for name in ("profile_lower", "profile_upper")]
+        for n, end in enumerate(it for it in ends if np.isfinite(it)):
+            ax.axvline(end, color=CURVES[1], lw=0.8, label=None if n else "interval")
+        ax.set_xlabel(f"{own['parameter'].item()} [SI]")
+        ax.set_ylabel("χ² above its least [–]")
+        ax.set_ylim(bottom=0.0)
+        ax.margins(x=0)
+        legend_below(ax)
     return ax
 
 

@@ -256,9 +256,12 @@ impl Moving {
 /// What stands before the name of a tensioner where a sprocket may be meant as well.
 const CARRIERS: &str = "tensioners.";
 
+/// Makes a control of the name of its target.
+type OfName = fn(String) -> Control;
+
 impl Control {
     /// Every kind by its name in programs, and what makes it of a name.
-    const KINDS: [(&str, fn(String) -> Self); 9] = [
+    const KINDS: [(&str, OfName); 9] = [
         ("torque", Self::Torque),
         ("speed", Self::Speed),
         ("angle", Self::Angle),

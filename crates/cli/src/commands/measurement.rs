@@ -1,5 +1,5 @@
-//! `chaindrive check-data`, `compare`, `calibrate`, `predict`: a measurement and a drive, which the Python package holds against each other;
-//! `uncertainty`, `tornado`: what is not known of a drive, which it varies.
+//! `chaindrive check-data`, `compare`, `calibrate`, `predict`, `next-measurement`: a measurement and a drive, which the Python package holds
+//! against each other; `uncertainty`, `tornado`: what is not known of a drive, which it varies.
 
 use std::path::PathBuf;
 
@@ -166,6 +166,56 @@ pub(crate) struct Predict {
     #[command(flatten)]
     #[serde(flatten)]
     runs: Runs,
+}
+
+/// Tells which channel, at which operating point and how long, would settle most of what is not known of a drive; by the command of the
+/// Python package.
+#[derive(Debug, Args, Serialize)]
+pub(crate) struct NextMeasurement {
+    /// Scene file or name of an embedded scene
+    #[arg(value_name = "SCENE|PRESET")]
+    source: String,
+
+    /// A value that is not known, between two bounds, such as "chain.stiffness=10 MN/m..40 MN/m"; may be repeated
+    #[arg(long, value_name = "PATH=LOW..HIGH", required = true)]
+    free: Vec<String>,
+
+    /// A quantity that could be measured, such as "span_tension[driven-driver]"; may be repeated
+    #[arg(long, value_name = "QUANTITY")]
+    candidate: Vec<String>,
+
+    /// Sensors that could be mounted: a TOML file with channels as `chaindrive.measured` takes them
+    #[arg(long, value_name = "FILE")]
+    rig: Option<PathBuf>,
+
+    /// A value of an operating point that the rig can run, such as "slow:sprockets.driver.motion.speed=150 rpm"; may be repeated, also of one
+    /// name
+    #[arg(long, value_name = "NAME:PATH=VALUE")]
+    excitation: Vec<String>,
+
+    /// The value that is to be settled, of those that are not known; all of them unless given
+    #[arg(long, value_name = "PATH")]
+    settle: Option<String>,
+
+    /// A fit from which errors shrink: what `chaindrive calibrate --json` printed
+    #[arg(long, value_name = "FIT")]
+    known: Option<PathBuf>,
+
+    /// Sampling rate of the record, such as "2 kHz"; 1 kHz unless given
+    #[arg(long, value_name = "RATE")]
+    rate: Option<String>,
+
+    /// Length of the record, such as "5 s"; 1 s unless given
+    #[arg(long, value_name = "TIME")]
+    record: Option<String>,
+
+    /// Length of the runs; 0.2 s unless given
+    #[arg(long, value_name = "TIME")]
+    until: Option<String>,
+
+    /// Prints JSON in place of the page
+    #[arg(long)]
+    json: bool,
 }
 
 /// Carries distributions of values through a drive: the spread of outputs, and whose it is (indices of Sobol); by the command of the

@@ -39,6 +39,7 @@ enum Form {
     Compare,
     Calibrate,
     Predict,
+    NextMeasurement,
     Uncertainty,
     Tornado,
     Error,
@@ -61,6 +62,9 @@ impl Form {
             Self::Compare => of_package(include_str!("../../schemas/compare.schema.json")),
             Self::Calibrate => of_package(include_str!("../../schemas/calibrate.schema.json")),
             Self::Predict => of_package(include_str!("../../schemas/predict.schema.json")),
+            Self::NextMeasurement => {
+                of_package(include_str!("../../schemas/next-measurement.schema.json"))
+            }
             Self::Uncertainty => of_package(include_str!("../../schemas/uncertainty.schema.json")),
             Self::Tornado => of_package(include_str!("../../schemas/tornado.schema.json")),
             Self::Error => schema_of::<Complaint>(),

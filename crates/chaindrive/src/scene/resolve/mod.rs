@@ -41,9 +41,9 @@ use chaindrive_mechanics::{Drive, DriveError, OilSupply, Parts, PlacedChain};
 use serde_json::{Value as Json, json};
 
 pub use catalogue::chain_named;
-pub use tunable::tunable_places;
 use cursor::Cursor;
 use on_span::GuidedChain;
+pub use tunable::tunable_places;
 
 use super::defaults;
 use super::error::{Problem, Problems};

@@ -14,7 +14,7 @@ use std::path::Path;
 
 use super::{arrows, root, sources};
 
-const CRATES: [&str; 13] = [
+const CRATES: [&str; 15] = [
     "identity",
     "quantities",
     "geometry",
@@ -26,8 +26,10 @@ const CRATES: [&str; 13] = [
     "couple",
     "fmu",
     "replay",
+    "lab",
     "cli",
     "python",
+    "wasm",
 ];
 
 /// A file of a crate: what it defines, what its names stand for, and the paths that its code has.

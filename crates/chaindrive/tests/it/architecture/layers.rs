@@ -11,7 +11,7 @@ struct Storeys {
     exceptions: &'static [(&'static str, &'static str, &'static str)],
 }
 
-const CRATES: [Storeys; 6] = [
+const CRATES: [Storeys; 7] = [
     Storeys {
         folder: "mechanics",
         layers: &[
@@ -136,7 +136,17 @@ const CRATES: [Storeys; 6] = [
             &["friction", "profile"],
             &["drive"],
             &["design", "run"],
-            &["fmu", "live", "precision", "replay", "sweep"],
+            &["fmu", "lab", "live", "precision", "replay", "sweep"],
+        ],
+        exceptions: &[],
+    },
+    Storeys {
+        folder: "wasm",
+        layers: &[
+            &["memory", "thrown"],
+            &["drive", "library"],
+            &["run", "simulation"],
+            &["picture", "recorder"],
         ],
         exceptions: &[],
     },
