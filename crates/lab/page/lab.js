@@ -110,7 +110,9 @@ class Lab {
     byId('back-to').disabled = true;
     fillFollow(this.film);
     this.onStarted?.();
-    if (wasPlaying || !keep) this.play();
+    // Whoever asks for less motion starts it himself.
+    const isStill = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
+    if (wasPlaying || !(keep || isStill)) this.play();
   }
 
   /** Whether curves of before can stand beside those to come. */
