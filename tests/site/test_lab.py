@@ -340,6 +340,29 @@ def test_a_scene_may_stand_in_the_page(visit, tmp_path):
     page.close()
 
 
+def test_the_last_while_is_saved_as_a_replay(page, visit, tmp_path):
+    preset(page, "industrial_16b")
+    until(page, "lab.pictures > 30")
+    page.click("#play")
+    until(page, "!lab.playing && !lab.lab.asked")
+    with page.expect_download(timeout=1000 * PATIENCE) as saved:
+        page.click("#replay")
+    path = tmp_path / "replay.html"
+    saved.value.save_as(path)
+    replay = visit(path)
+    replay.wait_for_function("window.replay && window.replay.firstFrame")
+    last = replay.evaluate("replay.frames") - 1
+    assert last >= 20
+    assert replay.evaluate(f"replay.time({last})") == pytest.approx(
+        page.evaluate("lab.time"), rel=1e-2
+    )
+    shown = replay.evaluate(f"replay.value('roller_x', {last}, 5)")
+    there = page.evaluate("lab.lab.film.arrays.roller_x.at(0, 5)")
+    assert shown == pytest.approx(there, abs=1e-4)
+    assert replay.errors == []
+    replay.close()
+
+
 def test_a_worker_that_ends_is_replaced(page):
     """After a panic a worker is of no more use: another goes on from the last snapshot."""
     until(page, "lab.lab.safe !== null")

@@ -136,11 +136,20 @@ class Scrolls {
     this.align(range);
     const colours = palette();
     for (const plot of this.plots) if (plot.width) this.drawPlot(plot, range, colours);
+    this.tellValues(range);
+  }
+
+  /** Values at the pointer, or now; these a few times a second only, which is as fast as they are read. */
+  tellValues(range) {
+    const { history } = this;
+    const now = performance.now();
+    if (this.pointer === null && now - (this.toldAt ?? 0) < 200) return;
+    this.toldAt = now;
     const moment = this.pointer === null ? history.end : range[0] + this.pointer * (range[1] - range[0]);
     const at = Math.min(history.length - 1, history.before(moment));
     for (const { curves } of this.plots) {
       for (const { index, value } of curves) {
-        value.textContent = at >= 0 ? withMinus(short(history.series[index][at])) : '';
+        put(value, at >= 0 ? withMinus(short(history.series[index][at])) : '');
       }
     }
   }

@@ -21,9 +21,12 @@ function liveInputs(facts) {
   }
   for (const shaft of shafts.filter((it) => tunables.includes(`${it.place}.load`))) {
     const mean = Math.abs(meanTorque(list(shaft.load)));
+    // A load that does not change is a torque; others are set as parts of what the scene has.
+    const isEven = mean > 0 && list(shaft.load).every((it) => it.kind === 'constant');
+    const whole = mean ? `that of the scene, ${quantity(mean, 'N m')} in the mean` : 'that of the scene';
     inputs.push({
-      group: 'Speed and load', key: `load ${shaft.name}`, label: `load of ${shaft.name}`, hint: mean ? `in parts of that of the scene, ${quantity(mean, 'N m')} in the mean` : 'in parts of that of the scene',
-      unit: '×', factor: 1, range: [0, 3], start: 1,
+      group: 'Speed and load', key: `load ${shaft.name}`, label: `load of ${shaft.name}`, hint: isEven ? '' : `in parts of ${whole}`,
+      unit: isEven ? 'N m' : '×', factor: isEven ? mean : 1, range: [0, 3], start: 1,
       set: (value) => [['set', { kind: 'parameter', name: `${shaft.place}.load`, value }]],
     });
   }

@@ -3,6 +3,9 @@
 /** Milliseconds that the worker computes before it answers. */
 const BUDGET = 25;
 
+/** Time between two pictures with which every one has its curves [s]. */
+const SMOOTH = 0.035;
+
 /** Milliseconds between two snapshots, from which a new worker goes on. */
 const SAFE = 2000;
 
@@ -48,10 +51,17 @@ class Lab {
   /** Opens a scene: `{ text, name }` or `{ preset }`; tells whether it moves. Mistakes are thrown. */
   async open(asked) {
     const about = await this.busy('Reading', this.core.ask('read', asked));
-    this.base = { text: about.text, name: about.name, links: about.resolved.chain?.links };
-    Object.assign(this, { changes: new Map(), closing: [] });
-    this.sliders.forget();
-    await this.start(about, false);
+    const { base, changes, closing } = this;
+    Object.assign(this, {
+      base: { text: about.text, name: about.name, links: about.resolved.chain?.links }, changes: new Map(), closing: [],
+    });
+    try {
+      await this.start(about, false);
+    } catch (error) {
+      // The drive before goes on.
+      Object.assign(this, { base, changes, closing });
+      throw error;
+    }
   }
 
   /** Starts a drive that was read; `keep` has the curves before stay as those of A. */
@@ -85,6 +95,7 @@ class Lab {
     this.spectrum.open(this.history, facts);
     this.ledger.open(channel);
     if (sameCurves) this.scrolls.keep(before, 'before the start anew');
+    if (!keep) this.sliders.forget();
     this.sliders.open(liveInputs(facts), anewInputs(facts));
     if (!keep) this.setPace(gentlePace(facts));
     for (const input of this.sliders.changes.filter((it) => !it.path)) this.change(input);
@@ -99,7 +110,9 @@ class Lab {
     byId('back-to').disabled = true;
     fillFollow(this.film);
     this.onStarted?.();
-    if (wasPlaying || !keep) this.play();
+    // Whoever asks for less motion starts it himself.
+    const isStill = window.matchMedia('(prefers-reduced-motion: reduce)').matches;
+    if (wasPlaying || !(keep || isStill)) this.play();
   }
 
   /** Whether curves of before can stand beside those to come. */
@@ -391,12 +404,12 @@ class Lab {
     const [wall, done, spent] = [sum('wall'), sum('done'), 1e-3 * sum('spent')];
     const share = (value) => `${withMinus(+value.toPrecision(2))} ×`;
     const plays = this.playing && wall > 0 ? done / wall : null;
-    byId('plays').textContent = plays === null ? 'paused' : `plays at ${share(plays)} real time`;
+    put(byId('plays'), plays === null ? 'paused' : `plays at ${share(plays)} real time`);
     const isBehind = plays !== null && this.spent.length > 20 && plays < 0.85 * this.pace;
     byId('plays').className = isBehind ? 'caution' : '';
     byId('plays').title = isBehind ? `asked for ${share(this.pace)}: this machine computes no faster` : '';
     if (spent > 0) this.rate = done / spent;
-    if (spent > 0) byId('computes').textContent = `computes ${share(done / spent)} real time`;
+    if (spent > 0) put(byId('computes'), `computes ${share(done / spent)} real time`);
   }
 
   /** One picture. */
@@ -410,8 +423,9 @@ class Lab {
     this.frames += 1;
     followScales(this.view, passed);
     this.view.draw();
-    this.scrolls.draw();
-    byId('clock').textContent = clockText(this.time, this.history.every);
+    // Where pictures come slowly the drive goes first.
+    if (!this.playing || passed < SMOOTH || this.frames % 3 === 0) this.scrolls.draw();
+    put(byId('clock'), clockText(this.time, this.history.every));
     if (now - (this.toldAt ?? 0) < 250) return;
     this.toldAt = now;
     this.tellSpeeds();

@@ -15,6 +15,12 @@ function save(name, text, type = 'text/plain') {
 /** A name that every disk takes. */
 const fileName = ({ name }) => (name || 'drive').replace(/\.toml$/, '').replace(/[^\w.-]+/g, '_').slice(0, 60) || 'drive';
 
+/** Saves a page that plays what was seen in the last while. */
+async function saveReplay(lab) {
+  const page = await lab.busy('Packing the replay', lab.core.ask('replay', { title: byId('title').textContent }));
+  save(`${fileName(lab.scene)}.html`, page, 'text/html');
+}
+
 /** The part of a link that holds a scene. */
 async function packScene({ text, name }) {
   const bytes = new TextEncoder().encode(JSON.stringify({ name, text }));

@@ -57,6 +57,7 @@ function listenToLab(lab) {
     play: toggle, step: () => lab.step(), reset: () => lab.reset(), keep: () => lab.keepState(), 'back-to': () => lab.goBackToKept(),
     undo, closer: () => zoom(1.4), farther: () => zoom(1 / 1.4), whole, stop: () => lab.stop(), theme: () => lab.changeTheme(),
     keys: () => byId('help').showModal(), edit: () => lab.editor.show(), own: () => lab.own.show(), judge: () => lab.given && makeReport(lab),
+    replay: () => lab.ready && lab.guarded(saveReplay(lab)),
     link: () => lab.scene && makeLink(lab).catch((error) => tell(error.message, 'bad')), 'message-away': () => tell(''),
     'kept-away': () => lab.scrolls.keep(null),
     further: () => findHorizon(lab, 4 * lab.horizon.follow),

@@ -1,9 +1,12 @@
 // The worker: reads scenes, moves a drive, answers one question after the other. The glue of the module stands before it.
 
-const { Drive, Simulation, Recorder, Picture, Snapshot, RunReport } = wasm_bindgen;
+const { Drive, Simulation, Recorder, Picture, Film, Snapshot, RunReport } = wasm_bindgen;
 
 /** What is in motion; nothing before `start`. */
 let held = null;
+
+/** Frames that a replay of the last while has: ten seconds of play. */
+const FILMED = 600;
 
 /** Memory of the module. */
 let memory = null;
@@ -43,10 +46,18 @@ function record() {
   held.recorder = new Recorder(held.moving, held.channels.join(','), held.every);
 }
 
+/** Begins a film with the present picture. */
+function filmAnew() {
+  free(held.film);
+  held.film = null;
+  held.film = new Film(held.picture, held.moving, FILMED);
+}
+
 /** Everything that the page draws and plots since the last answer, as copies that are handed over. */
 function seen() {
-  const { moving, recorder, picture } = held;
+  const { moving, recorder, picture, film } = held;
   picture.take(moving);
+  film.take(picture, moving);
   const frame = {
     placements: picture.placements().slice(),
     roller_x: picture.rollerX().slice(),
@@ -85,12 +96,13 @@ const answers = {
       read.free();
     }
     const moving = new Simulation(drive, 0);
-    held = { drive, moving, channels, every, recorder: null, picture: null };
+    held = { drive, moving, channels, every, recorder: null, picture: null, film: null };
     record();
     held.recorder.advance(moving, 0, 0);
     // What is drawn is read off where nothing has been: at another time than that of the samples.
     moving.advanceTo(1e-12);
     held.picture = new Picture(moving);
+    filmAnew();
     const [answer, handed] = seen();
     const { recorder, picture } = held;
     return [{
@@ -158,9 +170,13 @@ const answers = {
       snapshot.free();
     }
     record();
+    filmAnew();
     held.recorder.advance(held.moving, held.moving.time, 0);
     return seen();
   },
+
+  /** A page that plays the last frames. */
+  replay: ({ title }) => [held.film.page(title)],
 
   describe: ({ text, name }) => [withDrive(new Drive(text, name), (drive) => drive.describe())],
   horizon: ({ text, name, follow }) => [withDrive(new Drive(text, name), (drive) => JSON.parse(drive.horizon(follow)))],

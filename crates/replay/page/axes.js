@@ -3,6 +3,11 @@
 /** Curves of one plot that colours tell apart. */
 const MOST_COLOURS = 8;
 
+/** Writes a text where it is another one than before: what is written anew has to be laid out anew. */
+function put(place, text) {
+  if (place.textContent !== text) place.textContent = text;
+}
+
 /** Room for values from the least to the largest, with zero where it is near. */
 function roomFor(low, high) {
   if (!(low <= high)) return [0, 1];
@@ -26,7 +31,7 @@ function drawAxes(c, plot, colours, values, [start, end]) {
   const power = prefixed || exponent < -3 || exponent > 3 ? exponent : 0;
   const factor = 10 ** power;
   const unit = prefixed ? PREFIXES[exponent] + plot.unit : power ? `10${superscript(power)} ${plot.unit}` : plot.unit;
-  plot.unitPlace.textContent = plot.unit === '1' || plot.unit === '' ? '' : ` [${unit}]`;
+  put(plot.unitPlace, plot.unit === '1' || plot.unit === '' ? '' : ` [${unit}]`);
   c.font = '10.5px system-ui, "DejaVu Sans", sans-serif';
   const texts = ticks.map((tick) => withMinus(+(tick / factor).toPrecision(6)));
   // The widest number has room, sign included.

@@ -8,12 +8,14 @@
 //! and writes it into the page, whose HTML, style and programs lie in the folder `page` of this crate.
 
 mod animation;
+mod last_frames;
 mod page;
 mod picture;
 mod recorded;
 mod stream;
 
 pub use animation::{Animation, Body, Chain, Contact, Curve, Frames, Outline, PageTexts};
+pub use last_frames::LastFrames;
 pub use page::{PICTURE, STYLE, page};
 pub use picture::Picture;
 pub use recorded::{AnimationError, MOST_FRAMES, Selection, film};

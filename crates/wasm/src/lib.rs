@@ -13,6 +13,7 @@
 #![cfg(target_family = "wasm")]
 
 pub mod drive;
+mod film;
 pub mod library;
 mod memory;
 pub mod picture;

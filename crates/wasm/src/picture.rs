@@ -14,7 +14,7 @@ use crate::thrown::thrown;
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct Picture {
-    shown: replay::Picture,
+    pub(crate) shown: replay::Picture,
     roller_x: Vec<f64>,
     roller_y: Vec<f64>,
     link_tension: Vec<f64>,
@@ -29,6 +29,9 @@ impl Picture {
     /// An outline that is none.
     #[wasm_bindgen(constructor)]
     pub fn new(simulation: &mut Simulation) -> Result<Self, JsValue> {
+        // Nobody may have read it yet: a view alone is not what is shown.
+        let now = simulation.moving.read_at();
+        simulation.moving.advance_to(now).map_err(thrown)?;
         let figure = simulation.moving.assembled().figure().map_err(thrown)?;
         let mut picture = Self {
             shown: replay::Picture::of(figure).map_err(thrown)?,

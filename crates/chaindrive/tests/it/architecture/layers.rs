@@ -147,6 +147,7 @@ const CRATES: [Storeys; 7] = [
             &["drive", "library"],
             &["run", "simulation"],
             &["picture", "recorder"],
+            &["film"],
         ],
         exceptions: &[],
     },
