@@ -123,15 +123,17 @@ WASM := wasm32-unknown-unknown
 BINDGEN_VERSION := $(shell awk '/^name = "wasm-bindgen"$$/ { getline; gsub(/"/, ""); print $$3 }' Cargo.lock)
 BINDGEN := target/tools/wasm-bindgen-$(BINDGEN_VERSION)
 MODULE := target/$(WASM)/release/chaindrive_wasm.wasm
+# Lanes of two, which every browser in use has; a stack on which long chains settle, where the linker gives a megabyte; and no path of the machine that builds.
+MODULE_FLAGS = -C target-feature=+simd128 -C link-arg=-zstack-size=8388608 $(REMAP)
 
 lab: $(BINDGEN)/bin/wasm-bindgen ## Build the package for browsers and Node in target/lab/package, and the lab, a page that computes drives
 	@rustc --print target-libdir --target $(WASM) | xargs test -d || { \
 		echo "Rust cannot compile for browsers here; install the target: rustup target add $(WASM)" >&2; exit 1; }
-	cargo build --release --quiet --target $(WASM) -p chaindrive-wasm
+	RUSTFLAGS='$(MODULE_FLAGS)' cargo build --release --quiet --target $(WASM) -p chaindrive-wasm
 	rm -rf target/lab
-	$< --target web --out-name index --out-dir target/lab/package $(MODULE)
+	$< --target web --remove-name-section --out-name index --out-dir target/lab/package $(MODULE)
 	cp crates/wasm/package/* target/lab/package/
-	$< --target no-modules --no-typescript --out-name chaindrive --out-dir target/lab/page $(MODULE)
+	$< --target no-modules --no-typescript --remove-name-section --out-name chaindrive --out-dir target/lab/page $(MODULE)
 	cargo run $(QUICK) --quiet -p chaindrive-lab -- target/lab/page/chaindrive.js target/lab/page/chaindrive_bg.wasm target/lab/lab.html
 	mkdir -p python/chaindrive/library
 	cp target/lab/lab.html python/chaindrive/library/
@@ -144,7 +146,8 @@ WHEEL_TARGET = $(shell rustc -vV | sed -n 's/^host: //p')
 
 # No path of the machine that builds is in what ships.
 CARGO_FOLDER = $(or $(CARGO_HOME),$(HOME)/.cargo)
-wheels: export RUSTFLAGS := --remap-path-prefix=$(CURDIR)=chaindrive --remap-path-prefix=$(CARGO_FOLDER)=cargo
+REMAP = --remap-path-prefix=$(CURDIR)=chaindrive --remap-path-prefix=$(CARGO_FOLDER)=cargo
+wheels: export RUSTFLAGS := $(REMAP)
 wheels: export CFLAGS := -ffile-prefix-map=$(CARGO_FOLDER)=cargo
 
 wheels: lab $(VENV)/wheels-ready ## Build a wheel for Linux and the source distribution in dist, and try them
