@@ -80,5 +80,5 @@ pub fn two_sprockets(
     links: Option<u32>,
 ) -> Result<String, JsValue> {
     let layout = design::of_two_sprockets([first, second], pitch, distance, links);
-    Ok(serde_json::to_string(&layout.map_err(thrown)?).expect("a layout makes JSON"))
+    serde_json::to_string(&layout.map_err(thrown)?).map_err(thrown)
 }

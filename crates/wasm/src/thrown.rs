@@ -11,6 +11,7 @@ pub(crate) fn thrown(error: impl std::error::Error) -> JsValue {
 }
 
 /// The same of a scene: the message as a compiler would put it, with excerpts, and the mistakes one by one in `problems`.
+#[expect(clippy::needless_pass_by_value, reason = "results hand it over")]
 pub(crate) fn of_scene(error: SceneError) -> JsValue {
     let thrown = Error::new(&format!("{error:#}"));
     thrown.set_name("SceneError");
