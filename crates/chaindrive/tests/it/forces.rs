@@ -413,7 +413,7 @@ fn a_pull_is_refused_where_there_is_no_such_roller() {
         let message = error.unwrap_err().to_string();
         assert!(message.contains("rollers.0 to rollers.19"), "{message}");
     }
-    let hinged = Scene::preset("industrial_16b").unwrap();
+    let hinged = Scene::preset("bicycle").unwrap();
     let hinged = hinged.replace("chain.model", "ideal-joints").unwrap();
     let mut simulation = moving(&assembled(&hinged), Stepping::Auto);
     let error = simulation.set(&Control::ForceX("rollers.0".into()), 1.0);
