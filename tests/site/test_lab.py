@@ -4,6 +4,7 @@ import json
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import chaindrive as cd
@@ -185,6 +186,42 @@ def test_a_centre_goes_where_it_is_sent(page):
     page.select_option("#speed", "1")
     choose(page, "centre driven x", 1)
     until(page, f"Math.abs({where} - {before!r} - 1e-3) < 1e-8")
+
+
+def test_a_span_is_pulled_at(page):
+    """The force points to the hand, is limited, does work that the ledger has, and ends."""
+    preset(page, "industrial_16b")
+    until(page, "lab.time > 0.01")
+    roller = page.evaluate(
+        """() => {
+        const { view, film } = lab.lab;
+        const away = (i) => Math.hypot(view.roller(i)[0] - 0.5, view.roller(i)[1] + 0.18);
+        return [...Array(film.rollers).keys()].sort((a, b) => away(a) - away(b))[0];
+    }"""
+    )
+    place = "(roller) => lab.lab.view.toScreen(...lab.lab.view.roller(roller))"
+    box = page.locator("#picture").bounding_box()
+    x, y = page.evaluate(place, roller)
+    page.mouse.move(box["x"] + x, box["y"] + y)
+    page.mouse.down()
+    page.mouse.move(box["x"] + x, box["y"] + y + 120, steps=4)
+    until(page, "Math.hypot(...lab.lab.pull.force) > 0")
+    pulled = page.evaluate("lab.lab.pull.roller")
+    assert pulled >= 0
+    force = page.evaluate("lab.lab.pull.force")
+    assert force[1] < 0
+    assert np.hypot(*force) <= page.evaluate("lab.lab.pull.most") * (1 + 1e-9)
+    moves(page)
+    page.mouse.up()
+    assert page.evaluate("lab.lab.pull.roller") == -1
+    until(page, "lab.lab.ended.length === 0")
+    moves(page)
+    assert message(page) == ""
+    # It was no click: nothing is followed, and the picture has not moved.
+    assert page.evaluate("[lab.lab.view.followed, lab.lab.view.window.whole]") == [-1, True]
+    page.click("[data-tab=energy]")
+    until(page, "document.getElementById('share').textContent.includes('closes to')")
+    assert page.get_attribute("#share", "class") == ""
 
 
 def test_teeth_that_open_the_loop_close_it_with_other_links(page):

@@ -55,7 +55,7 @@ function factsOf({ resolved: scene, layout, tunables }) {
 }
 
 /** Samples taken while a pitch passes. */
-const IN_A_PITCH = 64;
+const IN_A_PITCH = 40;
 
 /** Time between two samples [s]. */
 function sampling(facts) {

@@ -120,7 +120,7 @@ function curvesOf(facts, started, every) {
     add(isArm ? 'arm' : 'tensioner', label, (row) => row[at] * (isArm ? 180 / Math.PI : 1e3));
   });
   const lost = channel('energy_dissipated').at;
-  const span = Math.max(1, Math.round((facts.mesh ?? 64 * every) / every));
+  const span = Math.max(1, Math.round((facts.mesh ?? IN_A_PITCH * every) / every));
   const kept = new Float64Array(span);
   let count = 0;
   let clock = NaN;

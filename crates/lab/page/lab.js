@@ -19,6 +19,9 @@ class Lab {
     this.spectrum = new Spectrum(byId('spectrum-picture'), byId('spectrum-of'), byId('spectrum-note'));
     this.ledger = new Ledger(byId('ledger'));
     this.sliders = new Sliders(byId('inputs'), (input) => this.change(input));
+    this.pull = new Pull(this);
+    /** Rollers whose pull has to end in the worker. */
+    this.ended = [];
     this.core = this.startCore();
     this.loop = (now) => this.show(now);
     requestAnimationFrame(this.loop);
@@ -83,6 +86,8 @@ class Lab {
     Object.assign(this, { scene: about, facts, given, started, kept: null, safe: null, ready: true, asked: false, spent: [] });
     this.moves.clear();
     this.pending.clear();
+    this.pull.forget();
+    this.ended = [];
     this.film = new LiveFilm(started);
     const shownBefore = this.view?.window;
     this.view = new View(byId('picture'), this.film);
@@ -209,9 +214,9 @@ class Lab {
     this.asked = true;
     const { opened } = this;
     try {
-      await this.flush();
       const now = performance.now();
       const passed = Math.min(100, now - this.asking) / 1e3;
+      await this.flush(this.pace * passed);
       this.asking = now;
       const begun = this.time;
       const answer = await this.core.ask('tick', { until: begun + this.pace * passed, budget: BUDGET });
@@ -248,9 +253,10 @@ class Lab {
     }
   }
 
-  /** Sends the changes of sliders to the worker. */
-  async flush() {
+  /** Sends the changes of sliders to the worker, and the pull of the hand along a ramp [s]. */
+  async flush(over = 0) {
     if (!this.ready) return;
+    if (this.pull.roller >= 0 || this.ended.length) await this.pull.send(over);
     const changed = [...this.pending.values()];
     this.pending.clear();
     for (const input of changed) {
@@ -423,6 +429,7 @@ class Lab {
     this.frames += 1;
     followScales(this.view, passed);
     this.view.draw();
+    this.pull.draw();
     // Where pictures come slowly the drive goes first.
     if (!this.playing || passed < SMOOTH || this.frames % 3 === 0) this.scrolls.draw();
     put(byId('clock'), clockText(this.time, this.history.every));

@@ -94,7 +94,7 @@ class Spectrum {
     const values = curve && this.samples(index);
     this.unitPlace.textContent = curve ? ` [${PLOTS[curve.plot].unit}]` : '';
     if (!values) {
-      this.note.textContent = 'A spectrum needs 128 samples: two pitches.';
+      this.note.textContent = 'A spectrum needs 128 samples: some three pitches.';
       return;
     }
     const { found, step } = amplitudes(values, this.history.every);

@@ -9,6 +9,7 @@ const LAB_KEYS = [
   ['Ctrl+Z', 'take the last change of a slider back'],
   ['+ −', 'closer, farther; also wheel or pinch'],
   ['0', 'whole drive'],
+  ['drag', 'pull at a roller or a span; elsewhere the picture moves'],
   ['f', 'follow a roller, or let it go; a click on a roller does the same'],
   ['e', 'text of the scene'],
   ['o', 'a drive of one\'s own'],
@@ -21,6 +22,8 @@ function listenToLab(lab) {
   const picture = {
     get view() { return lab.view; },
     set dirty(is) { lab.dirty = is; },
+    pull: (roller, hand) => lab.pull.take(roller, hand),
+    letGo: () => lab.pull.letGo(),
     follow(roller) {
       lab.view?.follow(roller);
       byId('follow').value = roller;

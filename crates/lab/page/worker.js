@@ -99,8 +99,6 @@ const answers = {
     held = { drive, moving, channels, every, recorder: null, picture: null, film: null };
     record();
     held.recorder.advance(moving, 0, 0);
-    // What is drawn is read off where nothing has been: at another time than that of the samples.
-    moving.advanceTo(1e-12);
     held.picture = new Picture(moving);
     filmAnew();
     const [answer, handed] = seen();

@@ -21,7 +21,7 @@ const OWN_STYLE: &str = include_str!("../page/style.css");
 /// The program of the worker, which stands after the glue of the module.
 const WORKER: &str = include_str!("../page/worker.js");
 /// The programs of the page, each a file, in the order in which they run, after those that draw a drive.
-const PROGRAMS: [&str; 16] = [
+const PROGRAMS: [&str; 17] = [
     include_str!("../page/core.js"),
     include_str!("../page/film.js"),
     include_str!("../page/facts.js"),
@@ -31,6 +31,7 @@ const PROGRAMS: [&str; 16] = [
     include_str!("../page/ledger.js"),
     include_str!("../page/inputs.js"),
     include_str!("../page/closing.js"),
+    include_str!("../page/pull.js"),
     include_str!("../page/lab.js"),
     include_str!("../page/bench.js"),
     include_str!("../page/share.js"),

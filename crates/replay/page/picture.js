@@ -60,15 +60,16 @@ function tellRoller(view, roller, touched = null) {
   place.replaceChildren(table);
 }
 
-/** Mouse, pen and fingers on the picture; what `player.view` shows may be another drive later. */
+/** Mouse, pen and fingers on the picture; what `player.view` shows may be another drive later. A player that can `pull` takes what is dragged at a roller. */
 function listenToPicture(canvas, player) {
   const fingers = new Map();
-  let moved = 0;
+  let [moved, pulled] = [0, -1];
   const place = (event) => [event.offsetX, event.offsetY];
   canvas.addEventListener('pointerdown', (event) => {
     canvas.setPointerCapture(event.pointerId);
     fingers.set(event.pointerId, place(event));
     moved = 0;
+    pulled = player.pull && player.view && fingers.size === 1 ? player.view.rollerAt(...place(event)) : -1;
   });
   canvas.addEventListener('pointermove', (event) => {
     const before = fingers.get(event.pointerId);
@@ -78,12 +79,15 @@ function listenToPicture(canvas, player) {
     const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
     moved += Math.hypot(dx, dy);
     if (fingers.size === 2) {
+      if (pulled >= 0) player.letGo();
+      pulled = -1;
       const other = [...fingers].find(([id]) => id !== event.pointerId)[1];
       const apart = (from) => Math.hypot(from[0] - other[0], from[1] - other[1]);
       const middle = [0.5 * (now[0] + other[0]), 0.5 * (now[1] + other[1])];
       view.zoom(apart(now) / Math.max(1, apart(before)), ...middle);
       view.pan(0.5 * dx, 0.5 * dy);
-    } else if (moved > 4) {
+    } else if (moved > 4 && pulled >= 0) player.pull(pulled, now);
+    else if (moved > 4) {
       canvas.classList.add('dragged');
       if (view.followed >= 0) player.follow(-1);
       view.pan(dx, dy);
@@ -98,6 +102,8 @@ function listenToPicture(canvas, player) {
       const roller = view.rollerAt(...place(event));
       if (roller >= 0 || view.followed >= 0) player.follow(roller === view.followed ? -1 : roller);
     }
+    if (pulled >= 0 && moved > 4) player.letGo();
+    pulled = -1;
     fingers.delete(event.pointerId);
     canvas.classList.remove('dragged');
   };

@@ -315,18 +315,24 @@ class View {
     for (let roller = 0; roller < this.film.rollers; roller++) {
       const length = (longest * forces.at(this.frame, roller)) / this.largestForce;
       if (!(length > 1.5)) continue;
-      const direction = directions.at(this.frame, roller);
-      const [dx, dy] = [Math.cos(direction), -Math.sin(direction)];
-      const [u, v] = this.toScreen(...this.roller(roller));
-      const [tipX, tipY] = [u + dx * length, v + dy * length];
-      const head = Math.min(5, 0.5 * length);
-      c.moveTo(u, v);
-      c.lineTo(tipX, tipY);
-      c.moveTo(tipX - head * (dx + 0.5 * dy), tipY - head * (dy - 0.5 * dx));
-      c.lineTo(tipX, tipY);
-      c.lineTo(tipX - head * (dx - 0.5 * dy), tipY - head * (dy + 0.5 * dx));
+      this.traceArrow(roller, directions.at(this.frame, roller), length);
     }
     c.stroke();
+  }
+
+  /** The path of an arrow from a roller, in a direction [rad] and of a length [pixels]; tells where its tip is. */
+  traceArrow(roller, direction, length) {
+    const { context: c } = this;
+    const [dx, dy] = [Math.cos(direction), -Math.sin(direction)];
+    const [u, v] = this.toScreen(...this.roller(roller));
+    const [tipX, tipY] = [u + dx * length, v + dy * length];
+    const head = Math.min(5, 0.5 * length);
+    c.moveTo(u, v);
+    c.lineTo(tipX, tipY);
+    c.moveTo(tipX - head * (dx + 0.5 * dy), tipY - head * (dy - 0.5 * dx));
+    c.lineTo(tipX, tipY);
+    c.lineTo(tipX - head * (dx - 0.5 * dy), tipY - head * (dy + 0.5 * dx));
+    return [tipX, tipY];
   }
 
   /** A ring around the roller that is followed, or that has just touched. */
