@@ -30,7 +30,7 @@ from chaindrive.progress import told
 from chaindrive.settings import Quantity
 from chaindrive.simulation import simulate
 
-__all__ = ["calibrate"]
+__all__ = ["calibrate", "fitted"]
 
 _Floats = NDArray[np.float64]
 
@@ -159,27 +159,9 @@ def calibrate(
     known = _priors(priors or {}, parameters)
     with told(progress, "fit") as tell:
         steps = _Steps(tell, 12 + starts)
-        fit = Fit(experiments, parameters, known, loss, steps)
-        jacobian, noise = fit.replicated(_inside(fit))
-        fit.designs = 1 + fit.is_noisy(jacobian, noise)
-        fit.refine(jacobian)
-        both, covariance = fit.with_priors(jacobian, fit.errors.covariance)
-        noises = np.zeros_like(both)
-        noises[: len(noise)] = noise
-        before = identifiability(parameters, both, covariance, noises)
-        settled = None
-        if before.is_identified:
-            settled = _settled(fit, starts, (known, loss, steps))
-        reasons = [f"{it.path} moves nothing that this record sees" for it in before.silent] + [
-            f"not identifiable: {words} (scaled eigenvalue {value:.2g}, needed {least:.2g})"
-            for value, least, words in before.combinations
-        ]
-        kept: Kept | None = None
-        if settled is not None:
-            reasons += _reasons(settled)
-            kept = validated(settled.fit, settled.optima[0], settled.worth, _LEVEL)
-    found = _dataset(settled, fit, before.eigenvalues, kept, (reasons, level))
+        found, settled = fitted(experiments, parameters, (known, loss, steps), starts, level)
     found.attrs["computed"] = keep.computed
+    reasons = found.attrs["reasons"]
     if settled is not None and not reasons:
         found.attrs |= _scenes(found, settled.fit, records, level)
     summary, page = told_calibration(found, records)
@@ -187,6 +169,46 @@ def calibrate(
     if reasons:
         warn(f"the fit is refused: {'; '.join(reasons)}", MeasurementWarning)
     return found
+
+
+def fitted(
+    experiments: Sequence[Experiment],
+    parameters: Sequence[FreeParameter],
+    how: tuple[Mapping[str, tuple[float, float]], str, Callable[[], object]],
+    starts: int,
+    level: float,
+) -> tuple[xr.Dataset, Settled | None]:
+    """Return what `calibrate` says of experiments, in numbers, and the fit where there is one.
+
+    Parameters
+    ----------
+    experiments
+        Drives beside records, as `begun` returns them.
+    parameters
+        What is free in any of them.
+    how
+        Priors, loss, and what is called when a step is done.
+    starts, level
+        As in `calibrate`.
+    """
+    known, loss, steps = how
+    fit = Fit(experiments, parameters, known, loss, steps)
+    jacobian, noise = fit.begin()
+    both, covariance = fit.with_priors(jacobian, fit.errors.covariance)
+    noises = np.zeros_like(both)
+    noises[: len(noise)] = noise
+    before = identifiability(parameters, both, covariance, noises)
+    reasons = [f"{it.path} moves nothing that this record sees" for it in before.silent] + [
+        f"not identifiable: {words} (scaled eigenvalue {value:.2g}, needed {least:.2g})"
+        for value, least, words in before.combinations
+    ]
+    settled: Settled | None = None
+    kept: Kept | None = None
+    if before.is_identified:
+        settled = _settled(fit, starts, how)
+        reasons += _reasons(settled)
+        kept = validated(settled.fit, settled.optima[0], settled.worth, _LEVEL)
+    return _dataset(settled, fit, before.eigenvalues, kept, (reasons, level)), settled
 
 
 class _Steps:
@@ -290,11 +312,6 @@ def _priors(
             raise MeasurementError(message, path, "positive [SI]")
         found[path] = (mean, deviation)
     return found
-
-
-def _inside(fit: Fit) -> _Floats:
-    """Return the start, far enough from the bounds for central differences."""
-    return np.array([it.around(0.05)[1] for it in fit.parameters])
 
 
 def _settled(fit: Fit, starts: int, how: tuple[Any, str, Callable[[], object]]) -> Settled:
