@@ -39,7 +39,10 @@ class Polynomials:
     def points(self, share: Floats) -> list[dict[str, float]]:
         """Parameters by path, of shares of their ranges (points, p) [–]."""
         return [
-            {it.path: it.low + s * (it.high - it.low) for it, s in zip(self.parameters, row)}
+            {
+                it.path: it.low + s * (it.high - it.low)
+                for it, s in zip(self.parameters, row, strict=True)
+            }
             for row in share
         ]
 
@@ -57,7 +60,11 @@ def features_at(
     """Features of runs (points, features)."""
     runs = experiment.evaluations.runs([experiment.row(x, design) for x in points])
     return np.array(
-        [experiment.simulated(run, x) for run, x in zip(runs, points) if run is not None]
+        [
+            experiment.simulated(run, x)
+            for run, x in zip(runs, points, strict=True)
+            if run is not None
+        ]
     )
 
 

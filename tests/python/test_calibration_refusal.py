@@ -1,4 +1,4 @@
-"""What a fit refuses: a model that lacks physics, pairs that nobody can part; and not the right one.
+"""What a fit refuses: models that lack physics, pairs that nobody parts; and not the right model.
 
 A right program refuses the right model in 5 of 100 or less with a probability of 0.9995.
 """

@@ -253,6 +253,11 @@ class Fit:
         """Return whitened residuals, of errors of one, independent of each other; priors last."""
         return self._residuals(self._all([x], 0)[0], x)
 
+    def residuals_at(self, points: Sequence[_Floats]) -> list[_Floats | None]:
+        """Return whitened residuals of several points [SI]; None where a run fails."""
+        rows = zip(points, self.features(points), strict=True)
+        return [None if it is None else self._residuals(it, x) for x, it in rows]
+
     def starts(self, count: int) -> list[tuple[float, _Floats]]:
         """Return starts over the ranges with their costs, the best of many.
 
