@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from calibration_studies import straight_errors
 from known_records import draws_of, record_of
 from scipy.stats import t as student
 
@@ -253,6 +254,7 @@ def test_intervals_of_forty_records_hold_the_truth() -> None:
     A right program has 33 of 40 or more with a probability of 0.9993 for each parameter.
     """
     hits, refused = dict.fromkeys(FOUR, 0), 0
+    wider: dict[str, list[float]] = {path: [] for path in FOUR}
     draws = draws_of("forty_records.csv")
     assert len(draws) == 40
     for number, draw in enumerate(draws):
@@ -260,14 +262,20 @@ def test_intervals_of_forty_records_hold_the_truth() -> None:
         rig = cd.scenes.industrial_16b()
         # As a fit reads the paths: the kind of friction stays.
         true = open_to(rig, truth).replace(truth | {"route.phase": float(draw["phase"])})
-        found = cd.calibrate(rig, record_of(true, draw, 1.0), FOUR)
+        data = record_of(true, draw, 1.0)
+        found = cd.calibrate(rig, data, FOUR)
+        straight = straight_errors(rig, data, FOUR, truth)
         refused += found.attrs["verdict"] == "refused"
         for path, value in truth.items():
             row = found.sel(parameter=path)
-            hits[path] += float(row["lower"]) < value < float(row["upper"])
+            lower, upper = float(row["lower"]), float(row["upper"])
+            hits[path] += lower < value < upper
+            wider[path].append((upper - lower) / (2.0 * 1.96 * straight[path]))
         print(number, found.attrs["verdict"], hits)
     assert min(hits.values()) >= 33, hits
     assert refused <= 4
+    # Of a straight drive with the same errors.
+    assert max(float(np.nanmedian(it)) for it in wider.values()) <= 1.4, wider
 
 
 #: Operating points of the study of predictions: half of the speed and load, and all of them.

@@ -1,4 +1,4 @@
-"""Studies of refusals: their draws, and one fit for each of them.
+"""Studies of fits: their draws, and one fit for each of them.
 
 Draws stand in tables that were made before anybody had seen a record of them; `table` makes them.
 """
@@ -14,19 +14,25 @@ import pandas as pd
 from known_records import Place, record_of
 
 import chaindrive as cd
+from chaindrive.measurement.evaluations import RunStore
+from chaindrive.measurement.experiment import begun
+from chaindrive.measurement.fitting import Fit, rooted
+from chaindrive.measurement.free import free_parameters, open_to
 
 LOAD = "sprockets.driven.load[0].torque"
 PRETENSION = "route.pretension"
 PRELOAD = "tensioners[0].push.preload"
 DAMPING = "tensioners[0].push.damping"
+CAMSHAFT = "sprockets.exhaust.load[0].torque"
 FRICTION = "contact.joints.friction"
 LAW = "contact.teeth.law"
 
-#: Seed of each table.
-SEEDS = {
-    "refusal_level.csv": 20261130,
-    "refusal_power.csv": 20261131,
-    "refusal_pairs.csv": 20261132,
+#: Seed and rows of each table.
+TABLES = {
+    "refusal_level.csv": (20261130, 100),
+    "refusal_power.csv": (20261131, 180),
+    "refusal_pairs.csv": (20261132, 100),
+    "timing_records.csv": (20261134, 20),
 }
 CHANNELS = ("tight", "slack", "torque")
 
@@ -38,6 +44,13 @@ TENSIONED: dict[str, Place] = {
     "tight": ("span_tension", "driver-driven", 2.0),
     "slack": ("span_tension", "idler-driver", 1.0),
     "torque": ("sprocket_torque", "driver", 0.1),
+}
+#: Of `timing_drive`: the plunger of its tensioner, and the mean torque of a camshaft.
+TIMING_FREE = {PRELOAD: (20.0, 80.0), CAMSHAFT: (0.0, 6.0)}
+TIMING: dict[str, Place] = {
+    "tight": ("span_tension", "crank-exhaust", 5.0),
+    "slack": ("span_tension", "intake-crank", 5.0),
+    "torque": ("sprocket_torque", "crank", 0.2),
 }
 #: Missing physics by kind: the path, its value in the fit, and in the truth by strength.
 #: A tooth of F = K δ^1.5 has at 500 N a share of the secant stiffness of the fit's spring.
@@ -67,9 +80,9 @@ CASES = [(kind, strength) for kind, (*_, of) in MISSING.items() for strength in 
 
 def table(name: str) -> pd.DataFrame:
     """Make the draws of a table."""
-    rng = np.random.default_rng(np.random.SeedSequence(SEEDS[name]))
+    seed, count = TABLES[name]
+    rng = np.random.default_rng(np.random.SeedSequence(seed))
     rows: list[dict[str, Any]] = []
-    count = {"refusal_level.csv": 100, "refusal_power.csv": 180, "refusal_pairs.csv": 100}[name]
     for number in range(count):
         gain = 0.01
         if name == "refusal_power.csv":
@@ -78,6 +91,8 @@ def table(name: str) -> pd.DataFrame:
             gain = 0.005
         elif name == "refusal_level.csv":
             row = {LOAD: rng.uniform(-1540.0, -1360.0), PRETENSION: rng.uniform(1200.0, 1800.0)}
+        elif name == "timing_records.csv":
+            row = {PRELOAD: rng.uniform(32.0, 68.0), CAMSHAFT: rng.uniform(1.2, 4.8)}
         else:
             # The load in two parts, ranges about the values, the speed.
             row = {
@@ -86,7 +101,7 @@ def table(name: str) -> pd.DataFrame:
                 "speed": rng.uniform(15.0, 60.0),
                 "mu": rng.uniform(0.05, 0.15),
             }
-        if name != "refusal_pairs.csv":
+        if name in ("refusal_level.csv", "refusal_power.csv"):
             # The fit begins near the truth: what is studied is what it says there.
             row |= {f"start {it}": rng.uniform(0.98, 1.02) for it in list(row) if "." in it}
         row["phase"] = rng.uniform()
@@ -132,7 +147,8 @@ def level_of(draw: Mapping[str, str], **settings: Any) -> dict[str, Any]:
     truth = {path: float(draw[path]) for path in LEVEL_FREE}
     true = rig.replace(truth | {"route.phase": float(draw["phase"])})
     data = record_of(true, draw, 0.2, run_in=0.25)
-    return _told(rig.replace(_start(draw, truth)), data, LEVEL_FREE, truth, settings)
+    start = rig.replace(_start(draw, truth))
+    return _told(start, data, LEVEL_FREE, truth, {"starts": 1} | settings)
 
 
 def power_of(draw: Mapping[str, str], **settings: Any) -> dict[str, Any]:
@@ -146,7 +162,17 @@ def power_of(draw: Mapping[str, str], **settings: Any) -> dict[str, Any]:
     data = record_of(true, draw, 0.2, TENSIONED, gain_uncertainty=0.005, **how)
     model = rig.replace(_start(draw, truth) | {path: wrong})
     case = {"kind": draw["kind"], "strength": draw["strength"]}
-    return case | _told(model, data, POWER_FREE, truth, settings)
+    return case | _told(model, data, POWER_FREE, truth, {"starts": 1} | settings)
+
+
+def timing_of(draw: Mapping[str, str], **settings: Any) -> dict[str, Any]:
+    """What a fit says of a record of `timing_drive`, which has a tensioner."""
+    rig = cd.scenes.timing_drive().replace({"run.run_in": 0.15})
+    truth = {path: float(draw[path]) for path in TIMING_FREE}
+    true = rig.replace(truth | {"route.phase": float(draw["phase"])})
+    how = {"run_in": 0.2, "step": 2.5e-6, "every": 2e-4}
+    data = record_of(true, draw, 0.2, TIMING, **how)
+    return _told(rig, data, TIMING_FREE, truth, {"starts": 3} | settings)
 
 
 #: Pairs of which only the sum or the product can be known.
@@ -194,7 +220,7 @@ def _start(draw: Mapping[str, str], truth: Mapping[str, float]) -> dict[str, flo
 def _told(rig: cd.Drive, data: Any, free: Any, truth: Any, settings: Any) -> dict[str, Any]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", cd.MeasurementWarning)
-        found = cd.calibrate(rig, data, free, starts=1, **settings)
+        found = cd.calibrate(rig, data, free, **settings)
     reasons = list(found.attrs["reasons"])
     kinds = {
         "missing": "physics are missing",
@@ -216,3 +242,24 @@ def _told(rig: cd.Drive, data: Any, free: Any, truth: Any, settings: Any) -> dic
         "hits": hits,
         "computed": int(found.attrs["computed"]),
     }
+
+
+def straight_errors(
+    rig: cd.Drive, data: Any, free: Mapping[str, Any], truth: Mapping[str, float], **settings: Any
+) -> dict[str, float]:
+    """Standard errors that the same record leaves to a straight drive [SI]: ``(Jᵀ C⁻¹ J)⁻¹``.
+
+    J at the truth, C of all errors of the record, as a fit has it; four runs a parameter.
+    """
+    drive = open_to(rig, free)
+    parameters = free_parameters(drive, data, free)
+    how = (settings.get("until"), None, settings.get("jobs"))
+    store = RunStore(settings.get("store"))
+    own = begun(drive, data, parameters, settings.get("validation", 0.25), store, how)
+    fit = Fit([own], parameters, {}, "linear", lambda: None)
+    fit.begin()
+    jacobian, _ = fit.replicated(np.array([truth[it.path] for it in parameters]))
+    errors, known = fit.errors, fit.known
+    rows = np.linalg.solve(rooted(errors.covariance[np.ix_(known, known)]), jacobian[known])
+    found = np.sqrt(np.diag(np.linalg.inv(rows.T @ rows))) * fit.half
+    return {it.path: float(error) for it, error in zip(parameters, found, strict=True)}

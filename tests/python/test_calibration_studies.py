@@ -1,4 +1,4 @@
-"""What a fit refuses: models that lack physics, pairs that nobody parts; and not the right model.
+"""What fits refuse, and what they hold: studies with draws of their own.
 
 A right program refuses the right model in 5 of 100 or less with a probability of 0.9995.
 """
@@ -8,11 +8,21 @@ from __future__ import annotations
 from collections import Counter
 
 import pytest
+from calibration_studies import (
+    CASES,
+    PAIRS,
+    TABLES,
+    TIMING_FREE,
+    level_of,
+    pair_of,
+    power_of,
+    table,
+    timing_of,
+)
 from known_records import draws_of
-from refusal_studies import CASES, PAIRS, SEEDS, level_of, pair_of, power_of, table
 
 
-@pytest.mark.parametrize("name", list(SEEDS))
+@pytest.mark.parametrize("name", list(TABLES))
 def test_a_table_has_what_its_seed_draws(name: str) -> None:
     """Nobody has chosen among draws: numpy's `SeedSequence` of a stated number makes them."""
     made = table(name)
@@ -54,3 +64,11 @@ def test_exact_pairs_are_named_before_the_fit(pair: tuple[str, str]) -> None:
     for draw in draws_of("refusal_pairs.csv"):
         said = pair_of(draw, pair)
         assert any(all(path in it for path in pair) for it in said), said
+
+
+@pytest.mark.slow
+def test_intervals_of_a_timing_drive_hold_the_truth() -> None:
+    """A right program has 16 of 20 or more with a probability of 0.9974 for each parameter."""
+    found = [timing_of(it) for it in draws_of("timing_records.csv")]
+    for path in TIMING_FREE:
+        assert sum(it["hits"][path] for it in found) >= 16, path
