@@ -10,6 +10,8 @@ from collections import Counter
 import pytest
 from calibration_studies import (
     CASES,
+    CHANNELS,
+    FRICTION,
     PAIRS,
     TABLES,
     TIMING_FREE,
@@ -19,7 +21,9 @@ from calibration_studies import (
     table,
     timing_of,
 )
-from known_records import draws_of
+from known_records import draws_of, record_of
+
+import chaindrive as cd
 
 
 @pytest.mark.parametrize("name", list(TABLES))
@@ -72,3 +76,20 @@ def test_intervals_of_a_timing_drive_hold_the_truth() -> None:
     found = [timing_of(it) for it in draws_of("timing_records.csv")]
     for path in TIMING_FREE:
         assert sum(it["hits"][path] for it in found) >= 16, path
+
+
+@pytest.mark.slow
+def test_friction_and_radius_of_pins_are_one_parameter() -> None:
+    """Torque of a joint μ r T: with the default friction the product alone is known."""
+    rig = cd.scenes.industrial_16b().replace({"run.run_in": 0.3})
+    draw = {"noise": "3"} | dict.fromkeys([f"gain_{it}" for it in CHANNELS], "1")
+    true = rig.replace({"route.phase": 0.3})
+    data = record_of(true, draw, 0.3, run_in=0.4, gain_uncertainty=0.002)
+    pair = (f"{FRICTION}.coefficient", "chain.joint.pin_diameter")
+    free = dict(zip(pair, [(0.07, 0.13), (6e-3, 10.5e-3)], strict=True))
+    with pytest.warns(cd.MeasurementWarning, match="only the product"):
+        found = cd.calibrate(rig, data, free, validation=0.0)
+    [said] = found.attrs["reasons"]
+    assert all(path in said for path in pair)
+    assert float(found["eigenvalue"][0]) < 0.01
+    assert f"{float(found['eigenvalue'][0]):.2g}" in said
