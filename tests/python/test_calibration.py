@@ -241,7 +241,7 @@ def test_intervals_of_forty_records_hold_the_truth() -> None:
     """Gains off by 1 %, noise correlated in time, another step, phase and sampling.
 
     Truths, phases, gains and seeds of the noise were drawn before any of these records was seen;
-    they stand in a table. Another one, `forty_records.csv`, was met by intervals of straight drives.
+    they stand in a table. That of `forty_records.csv` was met by intervals of straight drives.
     A right program has 33 of 40 or more with a probability of 0.9993 for each parameter.
     """
     hits, refused = dict.fromkeys(FOUR, 0), 0
