@@ -23,6 +23,7 @@ from chaindrive.measurement.experiment import Experiment, begun
 from chaindrive.measurement.fitting import Fit, Optimum, Worth, differs
 from chaindrive.measurement.free import FreeParameter, free_parameters, open_to
 from chaindrive.measurement.identifiability import identifiability
+from chaindrive.measurement.likelihood import Sides, sides_of
 from chaindrive.measurement.profiling import Profile, profiled
 from chaindrive.measurement.provenance import fitted_drive
 from chaindrive.measurement.series import channel_names
@@ -33,7 +34,7 @@ from chaindrive.settings import Quantity
 from chaindrive.simulation import simulate
 from chaindrive.sweeping import checked_workers
 
-__all__ = ["calibrate"]
+__all__ = ["calibrate", "fitted"]
 
 _Floats = NDArray[np.float64]
 
@@ -43,6 +44,8 @@ _LEVEL = 0.01
 _AT_BOUND = 2e-3
 #: Difference of χ² below which two optima explain the record alike [–]: 95 % of one parameter.
 _ALIKE = 3.84
+#: How often a fit goes on from a deeper valley that a profile has met.
+_VALLEYS = 3
 _LOSSES = ("linear", "soft_l1", "huber", "cauchy", "arctan")
 
 
@@ -54,6 +57,8 @@ class Settled(NamedTuple):
     worth: Worth
     moved: _Floats
     """What another choice of method, step and run-in moves (p,) [SI]; zero for the same choice."""
+    sides: Sides | None
+    """How far parameters may be where the drive is not straight; None of a robust loss."""
 
 
 def calibrate(
@@ -175,29 +180,11 @@ def calibrate(
     asked = _profiled(profiles, parameters, loss)
     with told(progress, "fit") as tell:
         steps = _Steps(tell, 12 + starts)
-        fit = Fit(experiments, parameters, known, loss, steps)
-        jacobian, noise = fit.replicated(_inside(fit))
-        fit.designs = 1 + fit.is_noisy(jacobian, noise)
-        fit.refine(jacobian)
-        both, covariance = fit.with_priors(jacobian, fit.errors.covariance)
-        noises = np.zeros_like(both)
-        noises[: len(noise)] = noise
-        before = identifiability(parameters, both, covariance, noises)
-        settled = None
-        if before.is_identified:
-            settled = _settled(fit, starts, (known, loss, steps))
-        reasons = [f"{it.path} moves nothing that this record sees" for it in before.silent] + [
-            f"not identifiable: {words} (scaled eigenvalue {value:.2g}, needed {least:.2g})"
-            for value, least, words in before.combinations
-        ]
-        kept: Kept | None = None
-        if settled is not None:
-            reasons += _reasons(settled)
-            kept = validated(settled.fit, settled.optima[0], settled.worth, _LEVEL)
-        found = _dataset(settled, fit, before.eigenvalues, kept, (reasons, level))
+        found, settled = fitted(experiments, parameters, (known, loss, steps), starts, level)
         if asked and settled is not None:
             found = found.assign(_profiles(settled, asked, found, level))
     found.attrs["computed"] = keep.computed
+    reasons = found.attrs["reasons"]
     if settled is not None and not reasons:
         found.attrs |= _scenes(found, settled.fit, records, level)
     summary, page = told_calibration(found, records)
@@ -205,6 +192,46 @@ def calibrate(
     if reasons:
         warn(f"the fit is refused: {'; '.join(reasons)}", MeasurementWarning)
     return found
+
+
+def fitted(
+    experiments: Sequence[Experiment],
+    parameters: Sequence[FreeParameter],
+    how: tuple[Mapping[str, tuple[float, float]], str, Callable[[], object]],
+    starts: int,
+    level: float,
+) -> tuple[xr.Dataset, Settled | None]:
+    """Return what `calibrate` says of experiments, in numbers, and the fit where there is one.
+
+    Parameters
+    ----------
+    experiments
+        Drives beside records, as `begun` returns them.
+    parameters
+        What is free in any of them.
+    how
+        Priors, loss, and what is called when a step is done.
+    starts, level
+        As in `calibrate`.
+    """
+    known, loss, steps = how
+    fit = Fit(experiments, parameters, known, loss, steps)
+    jacobian, noise = fit.begin()
+    both, covariance = fit.with_priors(jacobian, fit.errors.covariance)
+    noises = np.zeros_like(both)
+    noises[: len(noise)] = noise
+    before = identifiability(parameters, both, covariance, noises)
+    reasons = [f"{it.path} moves nothing that this record sees" for it in before.silent] + [
+        f"not identifiable: {words} (scaled eigenvalue {value:.2g}, needed {least:.2g})"
+        for value, least, words in before.combinations
+    ]
+    settled: Settled | None = None
+    kept: Kept | None = None
+    if before.is_identified:
+        settled = _settled(fit, starts, level, how)
+        reasons += _reasons(settled)
+        kept = validated(settled.fit, settled.optima[0], settled.worth, _LEVEL)
+    return _dataset(settled, fit, before.eigenvalues, kept, (reasons, level)), settled
 
 
 class _Steps:
@@ -329,12 +356,9 @@ def _profiled(
     return [paths.index(path) for path in wanted]
 
 
-def _inside(fit: Fit) -> _Floats:
-    """Return the start, far enough from the bounds for central differences."""
-    return np.array([it.around(0.05)[1] for it in fit.parameters])
-
-
-def _settled(fit: Fit, starts: int, how: tuple[Any, str, Callable[[], object]]) -> Settled:
+def _settled(
+    fit: Fit, starts: int, level: float, how: tuple[Any, str, Callable[[], object]]
+) -> Settled:
     """Fit; choose anew what was frozen; where that differs, fit once more."""
     optima = fit.optima(starts)
     known, loss, steps = how
@@ -346,7 +370,25 @@ def _settled(fit: Fit, starts: int, how: tuple[Any, str, Callable[[], object]]) 
         last = other.optimum(optima[0].x, is_near=True)
         moved = last.x - optima[0].x
         fit, optima = other, [last, *optima[1:]]
-    return Settled(fit, optima, fit.worth(optima[0]), moved)
+    worth = fit.worth(optima[0])
+    if loss != "linear":
+        # Of a robust loss χ² is no likelihood.
+        return Settled(fit, optima, worth, moved, None)
+    for _ in range(_VALLEYS):
+        sides = sides_of(fit, optima[0], worth.covariance, _student(level, worth.freedom))
+        if sides.better is None:
+            break
+        deeper = fit.optimum(sides.better, is_near=True)
+        if deeper.cost >= optima[0].cost:
+            break
+        optima = [deeper, *optima]
+        worth = fit.worth(deeper)
+    return Settled(fit, optima, worth, moved, sides)
+
+
+def _student(level: float, freedom: _Floats) -> _Floats:
+    t = extra("scipy.stats", "intervals").t.ppf(0.5 + 0.5 * level, np.minimum(freedom, 1e9))
+    return np.asarray(t, dtype=np.float64)
 
 
 def _anew(experiment: Experiment, fit: Fit, best: Optimum) -> Experiment:
@@ -432,14 +474,18 @@ def _dataset(
             "optimum": (("valley", "parameter"), np.stack([it.x for it in settled.optima])),
             "optimum_chi2": ("valley", chi2, {"units": "1"}),
         }
-    error = np.sqrt(np.diag(covariance))
-    t = extra("scipy.stats", "intervals").t.ppf(0.5 + 0.5 * level, np.minimum(freedom, 1e9))
+    t = _student(level, freedom)
+    below, above = _ends(settled, t, covariance) if settled is not None else (nan, nan)
+    error = np.maximum(below, above) / t
+    # Where an interval is wider than that of a straight drive, so is what follows from it.
+    wider = error / np.sqrt(np.diag(covariance))
+    covariance = covariance * np.outer(wider, wider)
     deviation = np.sqrt(np.diag(errors.covariance))
     variables |= {
         "estimate": (one, estimate),
         "error": (one, error),
-        "lower": (one, estimate - t * error),
-        "upper": (one, estimate + t * error),
+        "lower": (one, estimate - below),
+        "upper": (one, estimate + above),
         "freedom": (one, freedom, {"units": "1"}),
         "start": (one, [it.start for it in parameters]),
         "low": (one, [it.low for it in parameters]),
@@ -494,6 +540,24 @@ def _profiles(
         "profile_lower": ("parameter", ends[0]),
         "profile_upper": ("parameter", ends[1]),
     }
+
+
+def _ends(settled: Settled, t: _Floats, covariance: _Floats) -> tuple[_Floats, _Floats]:
+    """Return how far intervals reach below and above an estimate (p,) [SI]."""
+    fit, best = settled.fit, settled.optima[0]
+    straight = t * np.sqrt(np.diag(covariance))
+    if settled.sides is None:
+        return straight, straight
+    below, above = (
+        np.maximum(np.hypot(it * fit.half, t * np.abs(settled.moved)), straight)
+        for it in (settled.sides.below, settled.sides.above)
+    )
+    for other in settled.optima[1:]:
+        # Another valley that explains the record alike belongs to the interval.
+        alike = 2.0 * (other.cost - best.cost) < t**2
+        below = np.where(alike, np.maximum(below, best.x - other.x), below)
+        above = np.where(alike, np.maximum(above, other.x - best.x), above)
+    return below, above
 
 
 def _scenes(

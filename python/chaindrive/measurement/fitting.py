@@ -21,6 +21,8 @@ _Floats = NDArray[np.float64]
 #: Step of the differences of a fit, as a share of half the range [–] (assumed): amplitudes bend
 #: over more of it as drives come near to a resonance, and beside it a run has little noise.
 _STEP = 0.05
+#: Step where differences over that are noise, as `check_data` takes it [–].
+_LONG_STEP = 0.2
 #: Share by which amplitudes may be off in the first of two fits [–] (assumed).
 _LOOSE = 0.5
 #: Shortest step (assumed): the numbers of a run are rough below.
@@ -145,11 +147,33 @@ class Fit:
         #: Steps of differences, as shares of half a range (p,) [–].
         self.steps = np.full(len(parameters), _STEP)
 
-    def refine(self, jacobian: _Floats) -> None:
+    def begin(self) -> tuple[_Floats, _Floats]:
+        """Return derivatives at the start with their noise, and take designs and steps by them.
+
+        What is noise over a short step may be clear over a longer one.
+        """
+        jacobian, noise = self.replicated(self._inside(_STEP))
+        self.designs = 1 + self.is_noisy(jacobian, noise)
+        if self.designs > 1:
+            short = self.steps
+            self.steps = np.full(len(self.parameters), _LONG_STEP)
+            longer, quieter = self.replicated(self._inside(_LONG_STEP))
+            if self._chaos(quieter).max() < self._chaos(noise).max():
+                jacobian, noise = longer, quieter
+            else:
+                self.steps = short
+        self._refine(jacobian)
+        return jacobian, noise
+
+    def _inside(self, share: float) -> _Floats:
+        """Return the start, far enough from the bounds for central differences."""
+        return np.array([it.around(share)[1] for it in self.parameters])
+
+    def _refine(self, jacobian: _Floats) -> None:
         """Take steps that move the record by about one error, where that is less."""
         rows, _ = self.with_priors(self._rooted(jacobian), np.eye(int(self.known.sum())))
         size = np.linalg.norm(rows, axis=0)
-        self.steps = np.clip(1.0 / np.maximum(size, 1.0), _LEAST_STEP, _STEP)
+        self.steps = np.clip(1.0 / np.maximum(size, 1.0), _LEAST_STEP, self.steps)
 
     def features(self, points: Sequence[_Floats], design: int = 0) -> list[_Floats | None]:
         """Return the features of parameter vectors [SI]; None where a run fails."""
@@ -215,9 +239,11 @@ class Fit:
     def is_noisy(self, jacobian: _Floats, noise: _Floats) -> bool:
         """Tell whether one design is not enough: what a parameter moves is not clear of noise."""
         signal = np.linalg.norm(self._rooted(jacobian), axis=0)
+        return bool((signal < CLEAR * self._chaos(noise)).any())
+
+    def _chaos(self, noise: _Floats) -> _Floats:
         own = np.sqrt(np.diag(self.errors.covariance))[self.known, None]
-        chaos = np.linalg.norm(noise[self.known] / own, axis=0)
-        return bool((signal < CLEAR * chaos).any())
+        return np.asarray(np.linalg.norm(noise[self.known] / own, axis=0))
 
     def with_priors(self, jacobian: _Floats, covariance: _Floats) -> tuple[_Floats, _Floats]:
         """Return derivatives and covariance of features with the priors as features of theirs."""
@@ -233,6 +259,11 @@ class Fit:
     def residuals(self, x: _Floats) -> _Floats:
         """Return whitened residuals, of errors of one, independent of each other; priors last."""
         return self._residuals(self._all([x], 0)[0], x)
+
+    def residuals_at(self, points: Sequence[_Floats]) -> list[_Floats | None]:
+        """Return whitened residuals of several points [SI]; None where a run fails."""
+        rows = zip(points, self.features(points), strict=True)
+        return [None if it is None else self._residuals(it, x) for x, it in rows]
 
     def starts(self, count: int) -> list[tuple[float, _Floats]]:
         """Return starts over the ranges with their costs, the best of many.
