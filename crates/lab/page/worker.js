@@ -5,8 +5,8 @@ const { Drive, Simulation, Recorder, Picture, Film, Snapshot, RunReport } = wasm
 /** What is in motion; nothing before `start`. */
 let held = null;
 
-/** Frames that a replay of the last while has: ten seconds of play. */
-const FILMED = 600;
+/** Frames that a replay of the last while has: some seconds of play. */
+const FILMED = 400;
 
 /** Memory of the module. */
 let memory = null;

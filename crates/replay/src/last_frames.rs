@@ -43,24 +43,25 @@ impl LastFrames {
         if times.last().is_some_and(|last| *last >= seen.time) {
             return;
         }
-        if times.len() >= 2 * self.most {
+        let room = 2 * self.most;
+        if times.len() >= room {
             self.forget(times.len() - self.most);
         }
         let frames = &mut self.film.frames;
-        frames.times.push(seen.time);
-        frames.placements.extend_from_slice(picture.placements());
-        frames.roller_x.extend_from_slice(&seen.roller_x);
-        frames.roller_y.extend_from_slice(&seen.roller_y);
+        extend(&mut frames.times, &[seen.time], room);
+        extend(&mut frames.placements, picture.placements(), room);
+        extend(&mut frames.roller_x, &seen.roller_x, room);
+        extend(&mut frames.roller_y, &seen.roller_y, room);
         let channels = [
             (&mut frames.link_tension, &seen.link_tension[..]),
             (&mut frames.contact_force, &seen.contact_force[..]),
             (&mut frames.contact_direction, picture.directions()),
         ];
         for (kept, values) in channels {
-            kept.get_or_insert_default().extend_from_slice(values);
+            extend(kept.get_or_insert_default(), values, room);
         }
         for (curve, tension) in self.film.curves.iter_mut().zip(&seen.span_tension) {
-            curve.values.push(*tension);
+            extend(&mut curve.values, &[*tension], room);
         }
     }
 
@@ -105,6 +106,14 @@ impl LastFrames {
         };
         last.film
     }
+}
+
+/// Appends the values of a frame; the first one makes room for all that are ever kept, so that memory does not grow afterwards.
+fn extend(kept: &mut Vec<f64>, values: &[f64], frames: usize) {
+    if kept.capacity() == 0 {
+        kept.reserve_exact(frames * values.len());
+    }
+    kept.extend_from_slice(values);
 }
 
 #[cfg(test)]
