@@ -134,6 +134,7 @@ FORETOLD = ["span_tension_mean[driven-driver]", "span_tension_std[driven-driver]
 @pytest.fixture(scope="module")
 def foretold(fit: xr.Dataset) -> xr.Dataset:
     outputs = [*FORETOLD, "loss_share", "sprocket_power_mean[driver]"]
+    # Runs of 50 ms, half as long as they were: the scatter of a span is known to 32 % only.
     return cd.predict(fit, outputs, at=SLOW_SHAFT, until=0.05, telling=0.4)
 
 

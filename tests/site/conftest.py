@@ -35,3 +35,15 @@ def visit(browser):
 def outside(url):
     """What is to be said of an address: nothing of those within the page."""
     return [] if url.startswith(("file:", "data:", "blob:", "about:")) else [f"asks for {url}"]
+
+
+@pytest.fixture(scope="session")
+def inked():
+    """Count the pixels of the picture of a page that are not of paper."""
+    program = (
+        "() => { const c = document.getElementById('picture'); "
+        "const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; "
+        "let n = 0; for (let i = 0; i < d.length; i += 4) n += d[i] + d[i+1] + d[i+2] < 690; "
+        "return n; }"
+    )
+    return lambda page: page.evaluate(program)

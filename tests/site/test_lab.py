@@ -142,17 +142,11 @@ def test_two_speeds_are_told(page):
 
 
 @pytest.mark.parametrize("name", list(cd.scenes.presets()))
-def test_presets_move(page, name):
+def test_presets_move(page, inked, name):
     preset(page, name)
     moves(page)
     assert message(page) == ""
-    inked = page.evaluate(
-        "() => { const c = document.getElementById('picture'); "
-        "const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; "
-        "let n = 0; for (let i = 0; i < d.length; i += 4) n += d[i] + d[i+1] + d[i+2] < 690; "
-        "return n; }"
-    )
-    assert inked > 1500
+    assert inked(page) > 1500
 
 
 @pytest.mark.parametrize("name", ["industrial_16b", "bicycle_derailleur"])

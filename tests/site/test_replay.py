@@ -190,19 +190,13 @@ def test_first_frame_and_script_time_keep_their_limits(visit, file):
 
 
 @pytest.mark.parametrize("name", list(cd.scenes.presets()))
-def test_presets_are_drawn(visit, name, tmp_path):
+def test_presets_are_drawn(visit, inked, name, tmp_path):
     drive = getattr(cd.scenes, name)()
     run = cd.simulate(drive, until=2e-3, every=1e-4, record=CHANNELS, error=False)
     path = tmp_path / f"{name}.html"
     cd.replay(run, path)
     page = opened(visit, path, viewport={"width": 1000, "height": 640})
-    inked = page.evaluate(
-        "() => { const c = document.getElementById('picture'); "
-        "const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; "
-        "let n = 0; for (let i = 0; i < d.length; i += 4) n += d[i] + d[i+1] + d[i+2] < 690; "
-        "return n; }"
-    )
-    assert inked > 1500
+    assert inked(page) > 1500
     assert page.errors == []
     page.screenshot(path=tmp_path / f"{name}.png")
     page.close()

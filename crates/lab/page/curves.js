@@ -200,14 +200,19 @@ class Scrolls {
     }
     if (this.pointer !== null) {
       const at = plot.left + this.pointer * (plot.right - plot.left);
-      c.strokeStyle = colours.ink;
-      c.lineWidth = 1;
-      c.beginPath();
-      c.moveTo(at, plot.top);
-      c.lineTo(at, plot.bottom);
-      c.stroke();
+      this.drawUpright(c, plot, at, colours.ink);
     }
     c.restore();
+  }
+
+  /** A line from the top to the bottom of a plot. */
+  drawUpright(c, plot, at, colour) {
+    c.strokeStyle = colour;
+    c.lineWidth = 1;
+    c.beginPath();
+    c.moveTo(at, plot.top);
+    c.lineTo(at, plot.bottom);
+    c.stroke();
   }
 
   /** Where waveforms cease to be believed. */
@@ -220,12 +225,7 @@ class Scrolls {
     c.fillRect(at, plot.top, plot.right - at, plot.bottom - plot.top);
     c.globalAlpha = 1;
     c.setLineDash([4, 4]);
-    c.strokeStyle = colours.faint;
-    c.lineWidth = 1;
-    c.beginPath();
-    c.moveTo(at, plot.top);
-    c.lineTo(at, plot.bottom);
-    c.stroke();
+    this.drawUpright(c, plot, at, colours.faint);
     c.setLineDash([]);
     c.textAlign = 'left';
     c.textBaseline = 'top';

@@ -41,7 +41,7 @@ const PROGRAMS: [&str; 17] = [
     include_str!("../page/start.js"),
 ];
 
-/// Where the scene stands in a page that has none yet.
+/// Place of the scene in a page without one.
 const NO_SCENE: &str = r#"<script id="scene" type="application/json">null</script>"#;
 
 /// The page: HTML that needs nothing else.
@@ -100,7 +100,7 @@ mod tests {
 
     use super::*;
 
-    /// What stands between two texts, which come once each in this order.
+    /// Text between two others, which come once each in this order.
     fn between<'a>(text: &'a str, begin: &str, end: &str) -> &'a str {
         let (_, after) = text.split_once(begin).unwrap();
         after.split_once(end).unwrap().0

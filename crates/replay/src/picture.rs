@@ -9,7 +9,7 @@ use chaindrive_geometry::{ArcSpline, GeometryError, Point};
 
 use crate::animation::{Body, Chain, Outline};
 
-/// How far chords may stand off outlines, in pitches: a tenth of a pixel where a pitch fills the window.
+/// Largest distance of chords from outlines, in pitches: a tenth of a pixel where a pitch fills the window.
 const CHORDS: f64 = 1e-4;
 
 /// A figure drawn with chords, at one instant after the other.

@@ -150,7 +150,7 @@ impl Drive {
         Ok(draw::svg(&figure, &figure.start(), self.scene.title()))
     }
 
-    /// How long waveforms can be believed, by a twin that starts 1e-12 m apart: JSON, `{"time" [s], "sentence"}`, time null where there is no end. It
+    /// Horizon of its waveforms, by a twin that starts 1e-12 m apart: JSON, `{"time" [s], "sentence"}`, time null where there is no end. It
     /// takes the time of two runs.
     ///
     /// @param follow time for which the twins are followed \[s\]

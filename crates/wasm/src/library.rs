@@ -1,4 +1,4 @@
-//! What the module knows without a drive: presets, chains of the catalogue, layouts, channels.
+//! Knowledge that needs no drive: presets, chains of the catalogue, layouts, channels.
 
 use chaindrive::catalogue::{Number, catalogue};
 use chaindrive::{Channel, InstructionSet, Scene, design, scene};

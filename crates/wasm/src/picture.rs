@@ -44,7 +44,7 @@ impl Picture {
         Ok(picture)
     }
 
-    /// What stays the same: JSON, `{"bodies": [{"name", "kind", "outlines": [{"points" [m], "closed"}]}], "chains": [{"name", "rollers", "links",
+    /// Constant parts of the picture: JSON, `{"bodies": [{"name", "kind", "outlines": [{"points" [m], "closed"}]}], "chains": [{"name", "rollers", "links",
     /// "pitch" [m], "roller_radius" [m], "plate_height" [m], …}]}`. Outlines are in the frame of their body.
     pub fn outlines(&self) -> String {
         let outline =

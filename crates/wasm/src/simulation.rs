@@ -32,7 +32,7 @@ impl Snapshot {
             .map_err(thrown)
     }
 
-    /// What a file keeps of it.
+    /// Its bytes, for a file or another instance of the module.
     #[wasm_bindgen(js_name = toBytes)]
     pub fn to_bytes(&self) -> Vec<u8> {
         self.0.to_bytes()

@@ -253,9 +253,9 @@ impl Moving {
     }
 }
 
-/// What stands before the name of a tensioner where a sprocket may be meant as well.
+/// Prefix of the name of a tensioner where a sprocket may be meant as well.
 const CARRIERS: &str = "tensioners.";
-/// What stands before the number of a roller.
+/// Prefix of the number of a roller.
 const ROLLERS: &str = "rollers.";
 
 /// Makes a control of the name of its target.

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use chaindrive_couple::{Export, LIBRARY, Model, PackageError, Standard, package, read_library};
 use clap::Args;
 
-use super::output::new_file;
+use super::output::{beside_program, new_file};
 use super::run::{Terminal, not_run};
 use crate::failure::Failure;
 use crate::request::{RunArguments, SceneArguments};
@@ -64,7 +64,14 @@ pub(crate) fn fmu(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     }
     let place = new_file(output, arguments.overwrite)?;
     let refused = |error: PackageError| Failure::Argument(error.to_string());
-    let library = arguments.library.clone().map_or_else(beside, Ok)?;
+    let library = match &arguments.library {
+        Some(library) => library.clone(),
+        None => beside_program(
+            &format!("{DLL_PREFIX}{LIBRARY}{DLL_SUFFIX}"),
+            "--library",
+            "name the library of units, or build it beside the program: cargo build --release",
+        )?,
+    };
     let library = read_library(&library).map_err(refused)?;
     let standard = match arguments.fmi.as_str() {
         "2" => Standard::Two,
@@ -93,21 +100,4 @@ pub(crate) fn fmu(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
         ));
     }
     Ok(())
-}
-
-/// The library beside the program.
-fn beside() -> Result<PathBuf, Failure> {
-    let name = format!("{DLL_PREFIX}{LIBRARY}{DLL_SUFFIX}");
-    let program = std::env::current_exe().map_err(|source| Failure::File {
-        path: name.clone(),
-        source,
-    })?;
-    let path = program.with_file_name(name);
-    if path.is_file() {
-        return Ok(path);
-    }
-    Err(Failure::Argument(format!(
-        "--library: {} is missing; name the library of units, or build it beside the program: cargo build --release",
-        path.display()
-    )))
 }

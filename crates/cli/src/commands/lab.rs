@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::output::new_file;
+use super::output::{beside_program, new_file};
 use crate::failure::Failure;
 use crate::request::SceneArguments;
 use crate::terminal::say;
@@ -51,7 +51,14 @@ pub(crate) fn lab(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
         )));
     }
     let place = new_file(output, arguments.overwrite)?;
-    let source = arguments.page.clone().map_or_else(beside, Ok)?;
+    let source = match &arguments.page {
+        Some(page) => page.clone(),
+        None => beside_program(
+            PAGE,
+            "--page",
+            "this build has no lab: take a wheel, which has one, or build it: make lab",
+        )?,
+    };
     let page = built(&source)?;
     let scene = arguments.scene.load(interrupted)?;
     // What is wrong with a drive is told here, and not to whoever opens the page.
@@ -75,20 +82,4 @@ fn built(path: &Path) -> Result<String, Failure> {
         let path = path.display();
         Failure::Argument(format!("--page: {path}: {error}; `make lab` builds it"))
     })
-}
-
-/// The page beside the program.
-fn beside() -> Result<PathBuf, Failure> {
-    let program = std::env::current_exe().map_err(|source| Failure::File {
-        path: PAGE.to_owned(),
-        source,
-    })?;
-    let path = program.with_file_name(PAGE);
-    if path.is_file() {
-        return Ok(path);
-    }
-    Err(Failure::Argument(format!(
-        "--page: {} is missing; this build has no lab: take a wheel, which has one, or build it: make lab",
-        path.display()
-    )))
 }

@@ -57,6 +57,22 @@ pub(crate) fn new_file(path: &Path, overwrite: bool) -> Result<NewFile, Failure>
     Ok(NewFile::at(path, Existing::overwriting(overwrite))?)
 }
 
+/// A file that was built beside the program; `option` names another one, and `hint` says how to get it.
+pub(crate) fn beside_program(name: &str, option: &str, hint: &str) -> Result<PathBuf, Failure> {
+    let program = std::env::current_exe().map_err(|source| Failure::File {
+        path: name.to_owned(),
+        source,
+    })?;
+    let path = program.with_file_name(name);
+    if path.is_file() {
+        return Ok(path);
+    }
+    let path = path.display();
+    Err(Failure::Argument(format!(
+        "{option}: {path} is missing; {hint}"
+    )))
+}
+
 /// Destination of the samples, by its name.
 #[derive(Debug)]
 pub(crate) enum Target {

@@ -84,14 +84,32 @@ pub(crate) struct Inputs {
     /// Along x, then y of every body.
     centre_forces: Vec<Ramp>,
     carrier_forces: Vec<Ramp>,
-    /// Forces on rollers that somebody has pulled at, by their numbers.
-    roller_forces: Vec<(usize, [Ramp; 2])>,
+    /// Forces on rollers that somebody has pulled at.
+    roller_forces: Vec<RollerForce>,
     /// Parameters that are no more those of the scene.
     pub(crate) tuned: Vec<(Input, f64)>,
     /// Changes to come, the earliest first: of equal times in the order of their planning.
     pub(crate) planned: Vec<(f64, Input, Course)>,
     /// Work of speeds that jumped \[J\], and of parameters that were changed.
     pub(crate) jumps: [Jumps; 2],
+}
+
+/// Force from outside on a roller.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct RollerForce {
+    /// Number of the roller over all chains.
+    pub(crate) roller: usize,
+    /// Along x and y \[N\].
+    ramps: [Ramp; 2],
+    /// Inertias that go with the coordinates of the roller, in their order \[kg or kg m²\].
+    pub(crate) inertias: Vec<f64>,
+}
+
+impl RollerForce {
+    /// Force along x and y \[N\].
+    pub(crate) fn at(&self, t: f64) -> [f64; 2] {
+        self.ramps.map(|ramp| ramp.at(t))
+    }
 }
 
 /// Work that was done in no time.
@@ -144,21 +162,30 @@ impl Inputs {
         pair(&self.carrier_forces, tensioner, t)
     }
 
-    /// Forces on rollers along x and y \[N\], by the numbers of the rollers over all chains.
-    pub(crate) fn roller_forces(&self, t: f64) -> impl Iterator<Item = (usize, [f64; 2])> {
-        let forces = self.roller_forces.iter();
-        forces.map(move |(roller, ramps)| (*roller, ramps.map(|ramp| ramp.at(t))))
+    /// Forces on rollers that somebody has pulled at.
+    pub(crate) fn roller_forces(&self) -> &[RollerForce] {
+        &self.roller_forces
     }
 
-    /// Sets a force on a roller along an axis on its course.
-    pub(crate) fn set_roller_force(&mut self, roller: usize, axis: usize, t: f64, to: Course) {
+    /// Sets a force on a roller along an axis on its course; `inertias` go with the coordinates of the roller.
+    pub(crate) fn set_roller_force(
+        &mut self,
+        (roller, inertias): (usize, Vec<f64>),
+        axis: usize,
+        t: f64,
+        to: Course,
+    ) {
         let forces = &mut self.roller_forces;
-        let place = forces.iter().position(|(known, _)| *known == roller);
+        let place = forces.iter().position(|known| known.roller == roller);
         let place = place.unwrap_or_else(|| {
-            forces.push((roller, Default::default()));
+            forces.push(RollerForce {
+                roller,
+                ramps: Default::default(),
+                inertias,
+            });
             forces.len() - 1
         });
-        let ramp = &mut forces[place].1[axis];
+        let ramp = &mut forces[place].ramps[axis];
         *ramp = Ramp::new(ramp.at(t), t, to);
     }
 
@@ -193,7 +220,7 @@ impl Inputs {
         let mut times = self.planned.iter().map(|(time, ..)| *time);
         let planned = times.find(|time| *time > t);
         let points = self.centre_forces.iter().chain(&self.carrier_forces);
-        let rollers = self.roller_forces.iter().flat_map(|(_, ramps)| ramps);
+        let rollers = self.roller_forces.iter().flat_map(|it| &it.ramps);
         let ramps = self.torques.iter().chain(&self.forces).chain(points);
         let ramps = ramps.chain(rollers);
         let ends = ramps.filter_map(|ramp| ramp.next_knot(t));

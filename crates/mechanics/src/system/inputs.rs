@@ -167,8 +167,9 @@ impl System {
                     inputs.set_carrier_force(tensioner, axis, t, course);
                 }
                 Input::RollerForce { roller, axis } => {
+                    let pulled = (roller, self.inertias_of_roller(roller, q));
                     let inputs = &mut self.bodies.inputs;
-                    inputs.set_roller_force(roller, axis, t, course);
+                    inputs.set_roller_force(pulled, axis, t, course);
                 }
                 Input::Centre { sprocket, axis } => {
                     if let Some(motion) = self.centre_motion(sprocket, axis) {
