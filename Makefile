@@ -17,8 +17,10 @@ FMU_LIBRARY := $(if $(filter Windows_NT,$(OS)),chaindrive_fmu.dll,$(if $(filter 
 # Every test that judges a validation case appends to it.
 VERDICTS := $(abspath target/verdicts.jsonl)
 
-# Cargo builds the bindings for the interpreter in .venv, whatever else is on the path.
-export PYO3_PYTHON := $(abspath $(BIN)/python)
+# As maturin tells it to Cargo: whoever of the two compiles the bindings and PyO3, the other need not. One library serves every
+# interpreter from 3.11 on, so no interpreter is asked.
+export PYO3_CONFIG_FILE := $(abspath crates/python/interpreter.txt)
+export PYO3_BUILD_EXTENSION_MODULE := 1
 
 # What Python compiles is kept, whatever the shell says: tests begin many a Python of their own, and each would compile every library again.
 export PYTHONDONTWRITEBYTECODE :=
@@ -139,7 +141,7 @@ lab: $(BINDGEN)/bin/wasm-bindgen ## Build the package for browsers and Node in t
 	cp target/lab/lab.html python/chaindrive/library/
 
 $(BINDGEN)/bin/wasm-bindgen:
-	cargo install wasm-bindgen-cli --version $(BINDGEN_VERSION) --locked --quiet --root $(BINDGEN)
+	cargo install wasm-bindgen-cli --version $(BINDGEN_VERSION) --quiet --root $(BINDGEN)
 
 # Both are linked against a C library that old machines have.
 WHEEL_TARGET = $(shell rustc -vV | sed -n 's/^host: //p')
@@ -207,7 +209,7 @@ define install # PROFILE, OTHER STAMP
 	cargo build --profile $(1) --quiet -p chaindrive-python -p chaindrive-fmu
 	mkdir -p python/chaindrive/library
 	cp target/$(1)/$(FMU_LIBRARY) python/chaindrive/library/
-	$(BIN)/maturin build --profile $(1) --quiet --interpreter $(BIN)/python --out target/wheels
+	$(BIN)/maturin build --profile $(1) --quiet --out target/wheels
 	$(PIP) --force-reinstall --no-deps target/wheels/chaindrive-*.whl
 	@mv $@.begun $@
 endef

@@ -33,6 +33,9 @@ TABLES = {
     "refusal_power.csv": (20261131, 180),
     "refusal_pairs.csv": (20261132, 100),
     "timing_records.csv": (20261134, 20),
+    # Anew, after more than two designs had come to tell noise.
+    "refusal_level_again.csv": (20261136, 100),
+    "refusal_pairs_again.csv": (20261137, 100),
     # Anew, after intervals had become those of profiles.
     "forty_again.csv": (20261135, 40),
 }
@@ -98,7 +101,7 @@ def table(name: str) -> pd.DataFrame:
             kind, strength = CASES[number % len(CASES)]
             row = {LOAD: rng.uniform(17.0, 23.0), PRELOAD: rng.uniform(160.0, 240.0)}
             gain = 0.005
-        elif name == "refusal_level.csv":
+        elif name.startswith("refusal_level"):
             row = {LOAD: rng.uniform(-1540.0, -1360.0), PRETENSION: rng.uniform(1200.0, 1800.0)}
         elif name == "forty_again.csv":
             # The inner 60 % of each range.
@@ -116,7 +119,7 @@ def table(name: str) -> pd.DataFrame:
                 "speed": rng.uniform(15.0, 60.0),
                 "mu": rng.uniform(0.05, 0.15),
             }
-        if name in ("refusal_level.csv", "refusal_power.csv"):
+        if name.startswith(("refusal_level", "refusal_power")):
             # The fit begins near the truth: what is studied is what it says there.
             row |= {f"start {it}": rng.uniform(0.98, 1.02) for it in list(row) if "." in it}
         row["phase"] = rng.uniform()

@@ -40,7 +40,7 @@ def test_a_table_has_what_its_seed_draws(name: str) -> None:
 
 @pytest.mark.slow
 def test_the_right_model_is_refused_seldom() -> None:
-    refused = [it for it in map(level_of, draws_of("refusal_level.csv")) if it["why"]]
+    refused = [it for it in map(level_of, draws_of("refusal_level_again.csv")) if it["why"]]
     assert len(refused) <= 5, refused
 
 
@@ -65,7 +65,7 @@ def test_missing_physics_is_refused_where_it_leaves_five_errors() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("pair", PAIRS, ids=["load", "friction"])
 def test_exact_pairs_are_named_before_the_fit(pair: tuple[str, str]) -> None:
-    for draw in draws_of("refusal_pairs.csv"):
+    for draw in draws_of("refusal_pairs_again.csv"):
         said = pair_of(draw, pair)
         assert any(all(path in it for path in pair) for it in said), said
 
@@ -91,5 +91,5 @@ def test_friction_and_radius_of_pins_are_one_parameter() -> None:
         found = cd.calibrate(rig, data, free, validation=0.0)
     [said] = found.attrs["reasons"]
     assert all(path in said for path in pair)
-    assert float(found["eigenvalue"][0]) < 0.01
+    assert float(found["eigenvalue"][0]) < 1e-3
     assert f"{float(found['eigenvalue'][0]):.2g}" in said

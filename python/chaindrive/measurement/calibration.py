@@ -22,7 +22,6 @@ from chaindrive.measurement.evaluations import RunStore
 from chaindrive.measurement.experiment import Experiment, begun
 from chaindrive.measurement.fitting import Fit, Optimum, Worth, differs
 from chaindrive.measurement.free import FreeParameter, free_parameters, open_to
-from chaindrive.measurement.identifiability import identifiability
 from chaindrive.measurement.likelihood import Sides, sides_of
 from chaindrive.measurement.profiling import Profile, profiled
 from chaindrive.measurement.provenance import fitted_drive
@@ -216,11 +215,7 @@ def fitted(
     """
     known, loss, steps = how
     fit = Fit(experiments, parameters, known, loss, steps)
-    jacobian, noise = fit.begin()
-    both, covariance = fit.with_priors(jacobian, fit.errors.covariance)
-    noises = np.zeros_like(both)
-    noises[: len(noise)] = noise
-    before = identifiability(parameters, both, covariance, noises)
+    before = fit.begin()
     reasons = [f"{it.path} moves nothing that this record sees" for it in before.silent] + [
         f"not identifiable: {words} (scaled eigenvalue {value:.2g}, needed {least:.2g})"
         for value, least, words in before.combinations

@@ -12,6 +12,7 @@ from chaindrive.errors import MeasurementError, SimulationError
 from chaindrive.extras import extra
 from chaindrive.measurement.experiment import Errors, Experiment
 from chaindrive.measurement.free import FreeParameter
+from chaindrive.measurement.identifiability import Identifiability, identifiability
 from chaindrive.measurement.sensitivities import CLEAR
 
 __all__ = ["Fit", "Optimum", "Worth", "chance", "differs", "drawn", "joined", "rooted"]
@@ -147,23 +148,50 @@ class Fit:
         #: Steps of differences, as shares of half a range (p,) [–].
         self.steps = np.full(len(parameters), _STEP)
 
-    def begin(self) -> tuple[_Floats, _Floats]:
-        """Return derivatives at the start with their noise, and take designs and steps by them.
+    def begin(self) -> Identifiability:
+        """Return what the record says of parameters at the start; take designs and steps by it.
 
-        What is noise over a short step may be clear over a longer one.
+        What is noise over a short step may be clear over a longer one. Where two designs leave it
+        in doubt whether a combination moves anything, all are taken, with even steps.
         """
-        jacobian, noise = self.replicated(self._inside(_STEP))
+        x = self._inside(_STEP)
+        jacobian, noise = self.replicated(x)
         self.designs = 1 + self.is_noisy(jacobian, noise)
         if self.designs > 1:
             short = self.steps
             self.steps = np.full(len(self.parameters), _LONG_STEP)
             longer, quieter = self.replicated(self._inside(_LONG_STEP))
             if self._chaos(quieter).max() < self._chaos(noise).max():
-                jacobian, noise = longer, quieter
+                x, jacobian, noise = self._inside(_LONG_STEP), longer, quieter
             else:
                 self.steps = short
+        found = self._identifiability(jacobian, noise)
+        most = max(len(it.designs) for it in self.experiments)
+        if found.is_in_doubt and most > 2:
+            steps = self.steps
+            self.steps = self._evened(jacobian)
+            jacobian, noise = self.replicated(x, most)
+            found = self._identifiability(jacobian, noise)
+            self.steps = steps
         self._refine(jacobian)
-        return jacobian, noise
+        return found
+
+    def _evened(self, jacobian: _Floats) -> _Floats:
+        """Return steps that move the record alike, none longer than it is.
+
+        Two parameters of which the drive knows only the sum or the product then make the same runs,
+        noise and bends included, and nothing is left of their difference.
+        """
+        moved = self.steps * np.linalg.norm(self._rooted(jacobian), axis=0)
+        moves = moved > _LEAST_STEP
+        even = self.steps * moved[moves].min(initial=np.inf) / np.where(moves, moved, np.inf)
+        return np.where(moves, np.maximum(even, _LEAST_STEP), self.steps)
+
+    def _identifiability(self, jacobian: _Floats, noise: _Floats) -> Identifiability:
+        both, covariance = self.with_priors(jacobian, self.errors.covariance)
+        noises = np.zeros_like(both)
+        noises[: len(noise)] = noise
+        return identifiability(self.parameters, both, covariance, noises)
 
     def _inside(self, share: float) -> _Floats:
         """Return the start, far enough from the bounds for central differences."""
@@ -225,16 +253,16 @@ class Fit:
         columns = [(found[2 * n] - found[2 * n + 1]) / width for n, width in enumerate(widths)]
         return np.stack(columns, axis=1)
 
-    def replicated(self, x: _Floats) -> tuple[_Floats, _Floats]:
-        """Return derivatives by two designs, of two phases: their mean and noise.
+    def replicated(self, x: _Floats, designs: int = 2) -> tuple[_Floats, _Floats]:
+        """Return derivatives by designs of as many phases: their mean, and its standard error.
 
         Of one step, for what bends is no noise. Where no chain has a phase, by one step and by two
         of it, whose difference is more than noise.
         """
         most = max(len(it.designs) for it in self.experiments)
-        how = [(1.0, 0), (1.0, 1)] if most > 1 else [(1.0, 0), (2.0, 0)]
+        how = [(1.0, it) for it in range(designs)] if most > 1 else [(1.0, 0), (2.0, 0)]
         slopes = [self.derivatives(x, *it) for it in how]
-        return np.mean(slopes, axis=0), np.std(slopes, axis=0)
+        return np.mean(slopes, axis=0), np.std(slopes, axis=0, ddof=1) / np.sqrt(len(how))
 
     def is_noisy(self, jacobian: _Floats, noise: _Floats) -> bool:
         """Tell whether one design is not enough: what a parameter moves is not clear of noise."""

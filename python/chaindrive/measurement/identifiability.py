@@ -20,6 +20,9 @@ LEAST_EIGENVALUE = 1e-4
 #: Multiple of what noise of derivatives makes of an eigenvalue that it has to exceed [–]: three
 #: standard deviations, squared.
 _FLOORS = 9.0
+#: Multiple of that noise below which two designs leave it in doubt [–]: of two squares over a
+#: variance that two designs tell, one in a hundred is larger (F distribution).
+_DOUBT = 100.0
 #: Effect of half the range, in standard errors of the whole record, below which a parameter does
 #: nothing that is seen [–] (assumed: then even the bounds cannot be told apart).
 _LEAST_EFFECT = 2.0
@@ -67,6 +70,11 @@ class Identifiability:
             if np.isfinite(value) and value < least:
                 found.append((float(value), float(least), _named(own, direction[loud], effect)))
         return found
+
+    @property
+    def is_in_doubt(self) -> bool:
+        """Whether noise of the derivatives may be all that a combination moves, or hide it."""
+        return bool((self.eigenvalues < _DOUBT * self.floor).any())
 
     @property
     def is_identified(self) -> bool:
