@@ -131,7 +131,8 @@ MODULE_FLAGS = -C target-feature=+simd128 -C link-arg=-zstack-size=8388608 $(REM
 lab: $(BINDGEN)/bin/wasm-bindgen ## Build the package for browsers and Node in target/lab/package, and the lab, a page that computes drives
 	@rustc --print target-libdir --target $(WASM) | xargs test -d || { \
 		echo "Rust cannot compile for browsers here; install the target: rustup target add $(WASM)" >&2; exit 1; }
-	RUSTFLAGS='$(MODULE_FLAGS)' cargo build --release --quiet --target $(WASM) -p chaindrive-wasm
+	@# The tool reads in a section which instructions there are; a stripped module has none.
+	RUSTFLAGS='$(MODULE_FLAGS)' CARGO_PROFILE_RELEASE_STRIP=none cargo build --release --quiet --target $(WASM) -p chaindrive-wasm
 	rm -rf target/lab
 	$< --target web --remove-name-section --out-name index --out-dir target/lab/package $(MODULE)
 	cp crates/wasm/package/* target/lab/package/

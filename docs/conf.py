@@ -20,6 +20,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx_copybutton",
     "sphinx_design",
+    "lab_link",
     "mathml",
     "scene_reference",
     "validation_cases",
@@ -40,6 +41,8 @@ nb_execution_timeout = 300
 nb_execution_in_temp = True
 # The gallery is drawn by an example; pages are run elsewhere, and inherit this.
 os.environ["CHAINDRIVE_EXAMPLES"] = str(HERE.parent / "examples")
+# Tutorials link to the lab on their drives.
+os.environ["CHAINDRIVE_SITE"] = str(HERE / "_ext")
 # Pictures have the colours of the scheme, seen on light and dark pages alike.
 os.environ["MATPLOTLIBRC"] = str(HERE / "matplotlibrc")
 nb_merge_streams = True

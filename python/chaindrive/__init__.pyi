@@ -48,6 +48,7 @@ from chaindrive.friction_law import Friction as Friction
 from chaindrive.friction_law import friction as friction
 from chaindrive.lab_page import Lab as Lab
 from chaindrive.lab_page import lab as lab
+from chaindrive.lab_page import lab_link as lab_link
 from chaindrive.live import Simulation as Simulation
 from chaindrive.live import Snapshot as Snapshot
 from chaindrive.live import View as View

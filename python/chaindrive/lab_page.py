@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import base64
+import json
+import zlib
 from os import PathLike, fspath
 from pathlib import Path
 from typing import ClassVar
@@ -11,10 +14,13 @@ from chaindrive.drive import Drive, _needed
 from chaindrive.errors import ChaindriveError
 from chaindrive.shown_page import ShownPage
 
-__all__ = ["Lab", "lab"]
+__all__ = ["Lab", "lab", "lab_link"]
 
 #: The page without a scene, which wheels have and `make lab` builds.
 PAGE = Path(__file__).with_name("library") / "lab.html"
+
+#: Characters of a scene in a link, at most: the page takes no longer one.
+_LONGEST_LINK = 32768
 
 
 class Lab(ShownPage):
@@ -71,3 +77,39 @@ def lab(drive: Drive, path: str | PathLike[str] | None = None) -> Lab:
     if place is not None:
         place.write(page.html.encode())
     return page
+
+
+def lab_link(drive: Drive, page: str = "lab.html") -> str:
+    """Make a link that opens a lab on a drive: one page serves many drives.
+
+    The scene stands, compressed, in the fragment of the address, which a browser does not send to
+    the server.
+
+    Parameters
+    ----------
+    drive
+        The drive on which the page opens.
+    page
+        Address of a page that `lab` or ``chaindrive lab`` has made, of whatever drive.
+
+    Raises
+    ------
+    ChaindriveError
+        The scene takes more than 32 kB, compressed.
+
+    Examples
+    --------
+    >>> import chaindrive as cd
+    >>> link = cd.lab_link(cd.scenes.timing_drive(), "https://example.org/lab.html")
+    >>> link[:35]
+    'https://example.org/lab.html#scene='
+    """
+    _needed(drive)
+    scene = json.dumps({"name": drive.name, "text": drive.text})
+    raw = zlib.compressobj(level=9, wbits=-15)
+    packed = base64.urlsafe_b64encode(raw.compress(scene.encode()) + raw.flush()).rstrip(b"=")
+    if len(packed) > _LONGEST_LINK:
+        size = -(-len(packed) // 1024)
+        message = f"the scene takes {size} kB in a link, and 32 kB are the most: lab(drive, path)"
+        raise ChaindriveError(message)
+    return f"{page}#scene={packed.decode()}"

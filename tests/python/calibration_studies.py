@@ -275,7 +275,8 @@ def straight_errors(
     """
     drive = open_to(rig, free)
     parameters = free_parameters(drive, data, free)
-    how = (settings.get("until"), None, settings.get("jobs"))
+    workers = {"jobs": settings.get("jobs"), "executor": None}
+    how = (settings.get("until"), None, workers)
     store = RunStore(settings.get("store"))
     own = begun(drive, data, parameters, settings.get("validation", 0.25), store, how)
     fit = Fit([own], parameters, {}, "linear", lambda: None)

@@ -28,6 +28,7 @@ NOISE = {"tight": 30.0, "slack": 18.0, "torque": 2.0}
 #: Truths: the middle of the ranges, so that few fits end at a bound.
 INNER = (0.4, 0.6)
 SEED = 20261133
+WORKERS = {"jobs": None, "executor": None}
 
 
 @cache
@@ -40,7 +41,7 @@ def experiment() -> Emulated:
     data = record_of(rig.replace({"route.phase": 0.3}), draw, 0.6, places, **how)
     drive = open_to(rig, FREE)
     parameters = free_parameters(drive, data, FREE)
-    whole = begun(drive, data, parameters, 0.0, RunStore(None), (None, None, None))
+    whole = begun(drive, data, parameters, 0.0, RunStore(None), (None, None, WORKERS))
     real = replace(whole, designs=whole.designs[:2])
     polynomials = Polynomials(real, degree=3, points=60, seed=1)
     rng = np.random.default_rng(np.random.SeedSequence(SEED))

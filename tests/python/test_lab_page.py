@@ -1,8 +1,12 @@
 """The lab by Python and by the command: a page that is built beforehand, opened on a drive."""
 
+import base64
 import json
+import random
+import re
 import subprocess
 import sys
+import zlib
 from pathlib import Path
 
 import pytest
@@ -43,6 +47,23 @@ def test_a_page_opens_on_its_drive(built: Path, tmp_path: Path) -> None:
     assert 'title="lab"' in page._repr_html_()
     with pytest.raises(ValueError, match=r"must end in \.html"):
         cd.lab(drive, tmp_path / "ring.pdf")
+
+
+def test_a_link_holds_a_drive() -> None:
+    drive = cd.scenes.spinning_ring().replace({"title": "Ring & <Rad> über alles"})
+    page, _, packed = cd.lab_link(drive, "https://example.org/lab.html").partition("#scene=")
+    assert page == "https://example.org/lab.html"
+    # As a fragment is written, and within it nothing that an attribute would end at.
+    assert re.fullmatch(r"[\w-]+", packed)
+    raw = base64.urlsafe_b64decode(packed + "=" * (-len(packed) % 4))
+    assert json.loads(zlib.decompress(raw, wbits=-15)) == {"name": drive.name, "text": drive.text}
+
+
+def test_a_scene_that_no_link_holds_is_told() -> None:
+    noise = base64.b64encode(random.Random(1).randbytes(30_000)).decode()
+    drive = cd.Drive.from_toml(f"{cd.scenes.spinning_ring().text}\n# {noise}\n")
+    with pytest.raises(cd.ChaindriveError, match=r"takes \d+ kB in a link, and 32 kB are the most"):
+        cd.lab_link(drive)
 
 
 def test_a_build_without_a_lab_says_how_to_get_one(

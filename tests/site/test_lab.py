@@ -350,6 +350,14 @@ def test_a_link_holds_the_scene(page, opened):
     moves(other)
 
 
+def test_a_link_of_python_opens_its_drive(opened):
+    drive = cd.scenes.industrial_16b().replace({"route.pretension": 2222.0})
+    page = opened(cd.lab_link(drive, ""))
+    until(page, "lab.ready")
+    assert page.evaluate("lab.lab.scene.text") == drive.text
+    moves(page)
+
+
 def test_a_damaged_link_is_told(opened):
     page = opened("#scene=AAAA")
     until(page, "lab.ready")

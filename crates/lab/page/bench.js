@@ -108,7 +108,6 @@ function tellHorizon(lab) {
 
 /** A whole run of the scene as it stands, judged in the background. */
 async function makeReport(lab) {
-  const { given } = lab;
   const dialog = byId('report');
   const text = byId('report-text');
   const bar = byId('report-progress');
@@ -119,11 +118,12 @@ async function makeReport(lab) {
   byId('report-save').disabled = true;
   byId('report-note').textContent = `Runs ${quantity(lab.facts.scene.run?.until ?? 1, 's')} of the scene from the start, chooses method and step, estimates the error. The drive goes on meanwhile.`;
   try {
-    const report = await lab.reportErrand.run('report', { text: given.text, name: given.name }, (share) => {
+    const { text: scene, name, left } = await lab.sceneAsItStands();
+    const report = await lab.reportErrand.run('report', { text: scene, name }, (share) => {
       bar.value = share;
     });
     text.textContent = report.failure ? `${report.failure}\n\n${report.summary}` : report.summary;
-    byId('report-note').textContent = 'Values of sliders that act while the drive moves are not part of the scene.';
+    byId('report-note').textContent = left.length ? `Not part of a scene, and left out: ${left.join(', ')}.` : '';
     byId('report-save').disabled = false;
     byId('report-save').onclick = () => save(`${fileName(lab.scene)}.txt`, report.summary);
   } catch (error) {

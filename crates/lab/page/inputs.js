@@ -3,7 +3,7 @@
 /** A range for a slider: from zero to a multiple of a value. */
 const upTo = (value, times, otherwise) => (value < 0 ? [times * value, 0] : [0, value > 0 ? times * value : otherwise]);
 
-/** Inputs that act at once: `{ key, label, unit, factor, range, start, set(value) → questions for the worker }`, values in SI. */
+/** Inputs that act at once: `{ key, label, unit, factor, range, start, set(value) → questions for the worker }`, values in SI; `inScene(value)` are `[path, value]` where a scene can say the same. */
 function liveInputs(facts) {
   const { scene, shafts, sprockets, mesh, tunables } = facts;
   const inputs = [];
@@ -17,6 +17,7 @@ function liveInputs(facts) {
       group: 'Speed and load', key: `speed ${shaft.name}`, label: `speed of ${shaft.name}`, hint: `${sense}; evenly, without orders that the scene adds`,
       unit: 'rpm', factor: RPM, range: upTo(Math.abs(speed), 2), start: Math.abs(speed),
       set: (value) => [['set', { kind: 'speed', name: shaft.name, value: Math.sign(speed) * value, over }]],
+      inScene: shaft.motion.kind === 'constant' ? (value) => [[`${shaft.place}.motion.speed`, Math.sign(speed) * value]] : null,
     });
   }
   for (const shaft of shafts.filter((it) => tunables.includes(`${it.place}.load`))) {
@@ -28,6 +29,7 @@ function liveInputs(facts) {
       group: 'Speed and load', key: `load ${shaft.name}`, label: `load of ${shaft.name}`, hint: isEven ? '' : `in parts of ${whole}`,
       unit: isEven ? 'N m' : '×', factor: isEven ? mean : 1, range: [0, 3], start: 1,
       set: (value) => [['set', { kind: 'parameter', name: `${shaft.place}.load`, value }]],
+      inScene: isEven ? (value) => list(shaft.load).map((it, i) => [`${shaft.place}.load[${i}].torque`, value * it.torque]) : null,
     });
   }
   for (const shaft of shafts.filter((it) => !it.motion && (list(it.drive).length || !facts.driver))) {
@@ -50,6 +52,7 @@ function liveInputs(facts) {
           group: 'Tensioners', key: `${key} ${name}`, label: `${key} of ${name}`, hint: 'of its spring',
           unit, factor: 1, range: upTo(start, 3, otherwise), start,
           set: (value) => [['set', { kind: 'parameter', name: `tensioners.${name}.push.${key}`, value }]],
+          inScene: (value) => [[`tensioners.${name}.push.${key}`, value]],
         });
       }
     }

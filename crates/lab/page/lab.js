@@ -288,6 +288,15 @@ class Lab {
     tell(`${input.label}: ${error.message}`, 'doubt');
   }
 
+  /** The scene with the values of sliders that a scene can hold; `left` are the names of the others. */
+  async sceneAsItStands() {
+    const { text, name } = this.scene;
+    const changed = this.sliders.changes.filter((it) => !it.path);
+    const left = changed.filter((it) => !it.inScene).map((it) => it.label);
+    const changes = changed.flatMap((it) => it.inScene?.(it.value) ?? []);
+    return changes.length ? { ...await this.core.ask('read', { text, name, changes }), left } : { text, name, left };
+  }
+
   /** Starts anew with the values of the scene that have been changed, one start after the other. */
   async renew() {
     if (this.renewing) return;

@@ -54,7 +54,8 @@ async function unpackScene(packed) {
 
 /** Puts the scene as it stands into the address, and the address on the clipboard. */
 async function makeLink(lab) {
-  const packed = await packScene(lab.scene);
+  const scene = await lab.sceneAsItStands();
+  const packed = await packScene(scene);
   if (packed.length > LONGEST_LINK) {
     tell(`The scene takes ${Math.ceil(packed.length / 1024)} kB in a link, and 32 kB are the most: download it instead.`, 'doubt');
     return;
@@ -63,7 +64,8 @@ async function makeLink(lab) {
   window.location.hash = lab.linked;
   const own = window.location.protocol === 'file:';
   const copied = await navigator.clipboard?.writeText(window.location.href).then(() => true, () => false);
-  tell(`The address above holds the scene now${copied ? ', and is on the clipboard' : ''}. `
+  const without = scene.left.length ? ` without ${scene.left.join(', ')}` : '';
+  tell(`The address above holds the scene now${without}${copied ? ', and is on the clipboard' : ''}. `
     + (own ? 'This page lies on a disk: the link opens on this machine only. Send the scene or the page itself to others.'
       : 'Whoever opens it has this drive; nothing else is kept anywhere.'));
 }

@@ -17,6 +17,9 @@ const LAB_KEYS = [
   ['?', 'these keys'],
 ];
 
+/** Shows the text of the drive as it stands. */
+const editScene = (lab) => (lab.scene ? lab.guarded(lab.sceneAsItStands().then((it) => lab.editor.show(it))) : lab.editor.show());
+
 /** What the picture, its buttons and its keys do. */
 function listenToLab(lab) {
   const picture = {
@@ -59,7 +62,7 @@ function listenToLab(lab) {
   const buttons = {
     play: toggle, step: () => lab.step(), reset: () => lab.reset(), keep: () => lab.keepState(), 'back-to': () => lab.goBackToKept(),
     undo, closer: () => zoom(1.4), farther: () => zoom(1 / 1.4), whole, stop: () => lab.stop(), theme: () => lab.changeTheme(),
-    keys: () => byId('help').showModal(), edit: () => lab.editor.show(), own: () => lab.own.show(), judge: () => lab.given && makeReport(lab),
+    keys: () => byId('help').showModal(), edit: () => editScene(lab), own: () => lab.own.show(), judge: () => lab.given && makeReport(lab),
     replay: () => lab.ready && lab.guarded(saveReplay(lab)),
     link: () => lab.scene && makeLink(lab).catch((error) => tell(error.message, 'bad')), 'message-away': () => tell(''),
     'kept-away': () => lab.scrolls.keep(null),
@@ -70,7 +73,7 @@ function listenToLab(lab) {
   const actions = {
     ' ': toggle, '.': () => lab.step(), '[': () => faster(1), ']': () => faster(-1), r: () => lab.reset(), a: () => lab.keepState(),
     b: () => lab.goBackToKept(), '+': () => zoom(1.4), '=': () => zoom(1.4), '-': () => zoom(1 / 1.4), 0: whole, f: followOrNot,
-    e: () => lab.editor.show(), o: () => lab.own.show(), d: () => lab.changeTheme(), '?': () => byId('help').showModal(),
+    e: () => editScene(lab), o: () => lab.own.show(), d: () => lab.changeTheme(), '?': () => byId('help').showModal(),
   };
   document.addEventListener('keydown', (event) => {
     if (document.querySelector('dialog[open]')) return;

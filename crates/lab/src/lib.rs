@@ -11,7 +11,7 @@ use std::io::Write;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use chaindrive_replay::{PICTURE, STYLE};
+use chaindrive_replay::{PICTURE, STAGE, STYLE};
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use serde_json::json;
@@ -57,7 +57,8 @@ pub fn page(glue: &str, module: &[u8]) -> String {
     let style = [STYLE, OWN_STYLE].concat();
     let program = [PICTURE.concat(), PROGRAMS.concat()].concat();
     // The largest goes in last: nothing is looked for in it.
-    PAGE.replace("{{style}}", &style)
+    PAGE.replace("{{stage}}", STAGE.trim_end())
+        .replace("{{style}}", &style)
         .replace("{{program}}", &program)
         .replace("{{worker}}", &within_script(WORKER))
         .replace("{{glue}}", &within_script(glue))

@@ -16,6 +16,6 @@ mod stream;
 
 pub use animation::{Animation, Body, Chain, Contact, Curve, Frames, Outline, PageTexts};
 pub use last_frames::LastFrames;
-pub use page::{PICTURE, STYLE, page};
+pub use page::{PICTURE, STAGE, STYLE, page};
 pub use picture::Picture;
 pub use recorded::{AnimationError, MOST_FRAMES, Selection, film};

@@ -11,6 +11,8 @@ use crate::stream::{LEVELS, LEVELS_OF_CURVES, Stream, Streams};
 const PAGE: &str = include_str!("../page/page.html");
 /// Style of pages on which a drive moves: paper, ink, the picture, its legend, plots, buttons.
 pub const STYLE: &str = include_str!("../page/style.css");
+/// What stands upon the picture of such pages: legend, buttons of its scale, the length of a bar, what is followed.
+pub const STAGE: &str = include_str!("../page/stage.html");
 /// Programs of such pages, in the order in which they run: colours, axes, the picture, and what it answers to.
 pub const PICTURE: [&str; 4] = [
     include_str!("../page/colours.js"),
@@ -116,7 +118,8 @@ pub fn page(film: &Animation) -> String {
     };
     let program = [DECODE, &PICTURE.concat(), &PROGRAMS.concat()].concat();
     // The texts of the run go in last: nothing is looked for in them.
-    PAGE.replace("{{style}}", STYLE)
+    PAGE.replace("{{stage}}", STAGE.trim_end())
+        .replace("{{style}}", STYLE)
         .replace("{{program}}", &program)
         .replace("{{title}}", &escaped(title))
         .replace("{{data}}", &STANDARD.encode(&streams.bytes))
