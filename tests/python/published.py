@@ -181,7 +181,8 @@ def page(simulate: bool = False) -> dict[str, Any]:
     names: dict[str, Any] = {}
     with contextlib.chdir(PAGE.parent), contextlib.redirect_stdout(io.StringIO()):
         for cell in re.findall(r"```\{code-cell\} python\n(.*?)```", text, flags=re.DOTALL):
-            if simulate or "cd.simulate(" not in cell:
+            # What has tags shows something, and computes nothing.
+            if not cell.startswith(":") and (simulate or "cd.simulate(" not in cell):
                 exec(compile(cell, PAGE.name, "exec"), names)
     return names
 
