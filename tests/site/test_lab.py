@@ -350,6 +350,29 @@ def test_a_link_holds_the_scene(page, opened):
     moves(other)
 
 
+def test_a_link_takes_what_sliders_have_set_while_it_moves(page, opened):
+    """Speed and load become those of the scene; a centre that was moved does not."""
+    preset(page, "industrial_16b")
+    before = page.evaluate("lab.lab.scene.text")
+    choose(page, "speed driver", 450)
+    choose(page, "load driven", 1000)
+    choose(page, "centre driven x", 1)
+    page.click("#link")
+    until(page, "location.hash.length > 20")
+    assert "without driven in x" in message(page)
+    # The drive that moves is as it was opened.
+    assert page.evaluate("lab.lab.scene.text") == before
+    other = opened(page.evaluate("location.hash"))
+    until(other, "lab.ready")
+    drive = cd.Drive.from_toml(other.evaluate("lab.lab.scene.text")).resolved().to_dict()
+    driver, driven = drive["sprockets"]
+    was = cd.scenes.industrial_16b().resolved().to_dict()["sprockets"]
+    sense = np.sign(was[0]["motion"]["speed"])
+    assert driver["motion"]["speed"] == pytest.approx(sense * 450 * np.pi / 30)
+    sense = np.sign(was[1]["load"][0]["torque"])
+    assert driven["load"][0]["torque"] == pytest.approx(sense * 1000)
+
+
 def test_a_link_of_python_opens_its_drive(opened):
     drive = cd.scenes.industrial_16b().replace({"route.pretension": 2222.0})
     page = opened(cd.lab_link(drive, ""))
