@@ -16,7 +16,7 @@ pytestmark = pytest.mark.skipif(
 def test_the_first_page_opens_a_timing_drive(visit):
     page = visit(SITE / "index.html", offline=True)
     page.click("a[href^='lab.html#scene=']")
-    page.locator("#title", has_text="Timing drive").wait_for()
+    page.locator("#title", has_text="Timing chain").wait_for()
     assert not page.errors
 
 
