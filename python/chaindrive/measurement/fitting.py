@@ -183,6 +183,7 @@ class Fit:
         noise and bends included, and nothing is left of their difference.
         """
         moved = self.steps * np.linalg.norm(self._rooted(jacobian), axis=0)
+        # What moves next to nothing does not shorten the steps of the others.
         moves = moved > _LEAST_STEP
         even = self.steps * moved[moves].min(initial=np.inf) / np.where(moves, moved, np.inf)
         return np.where(moves, np.maximum(even, _LEAST_STEP), self.steps)
