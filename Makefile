@@ -58,13 +58,12 @@ quick: $(VENV)/test-ready ## Check format, lints and types, test what changed, a
 slowest: setup $(VENV)/test-ready ## List the slowest tests of each language, and those above 3 CPU s without a reason
 	$(BIN)/python tests/slowest.py
 
-check: check-rust check-python ## Check format, lints, documentation and types
+check: check-rust check-python ## Check format, lints and types
 
-# In the profile of the tests, so that procedural macros and build scripts are built once.
+# In the profile of the tests, so that procedural macros and build scripts are built once. References of the documentation are held by `make pages`.
 check-rust: $(VENV)/ready
 	cargo fmt --all --check
 	cargo clippy $(QUICK) --workspace --all-targets -- -D warnings
-	RUSTDOCFLAGS='-D warnings' cargo doc $(QUICK) --workspace --no-deps --quiet
 
 check-python: setup $(VENV)/test-ready
 	$(BIN)/ruff format --check .
