@@ -1,6 +1,6 @@
 """Links that open drives of the documentation in the lab, which stands on the site as one page.
 
-A build of the package without the lab makes a site without it, and says so.
+A build of the package without the lab makes a site without it.
 """
 
 import shutil
@@ -10,7 +10,6 @@ from typing import Any
 from docutils import nodes
 from docutils.parsers.rst import Directive
 from sphinx.application import Sphinx
-from sphinx.util import logging
 
 import chaindrive as cd
 from chaindrive.lab_page import PAGE
@@ -56,8 +55,6 @@ def bring_page(app: Sphinx, failed: Exception | None) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    if not PAGE.exists():
-        logging.getLogger(__name__).info("no lab on this site: build it before, make lab")
     app.add_directive("lab-link", LabLink)
     app.connect("build-finished", bring_page)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

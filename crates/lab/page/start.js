@@ -18,7 +18,12 @@ const LAB_KEYS = [
 ];
 
 /** Shows the text of the drive as it stands. */
-const editScene = (lab) => (lab.scene ? lab.guarded(lab.sceneAsItStands().then((it) => lab.editor.show(it))) : lab.editor.show());
+async function editScene(lab) {
+  if (!lab.scene) return lab.editor.show();
+  const scene = await lab.sceneAsItStands();
+  if (scene.left.length) tell(`No scene can hold it, so the text is without ${scene.left.join(', ')}.`, 'doubt');
+  return lab.editor.show(scene);
+}
 
 /** What the picture, its buttons and its keys do. */
 function listenToLab(lab) {
@@ -62,7 +67,7 @@ function listenToLab(lab) {
   const buttons = {
     play: toggle, step: () => lab.step(), reset: () => lab.reset(), keep: () => lab.keepState(), 'back-to': () => lab.goBackToKept(),
     undo, closer: () => zoom(1.4), farther: () => zoom(1 / 1.4), whole, stop: () => lab.stop(), theme: () => lab.changeTheme(),
-    keys: () => byId('help').showModal(), edit: () => editScene(lab), own: () => lab.own.show(), judge: () => lab.given && makeReport(lab),
+    keys: () => byId('help').showModal(), edit: () => lab.guarded(editScene(lab)), own: () => lab.own.show(), judge: () => lab.given && makeReport(lab),
     replay: () => lab.ready && lab.guarded(saveReplay(lab)),
     link: () => lab.scene && makeLink(lab).catch((error) => tell(error.message, 'bad')), 'message-away': () => tell(''),
     'kept-away': () => lab.scrolls.keep(null),
@@ -73,7 +78,7 @@ function listenToLab(lab) {
   const actions = {
     ' ': toggle, '.': () => lab.step(), '[': () => faster(1), ']': () => faster(-1), r: () => lab.reset(), a: () => lab.keepState(),
     b: () => lab.goBackToKept(), '+': () => zoom(1.4), '=': () => zoom(1.4), '-': () => zoom(1 / 1.4), 0: whole, f: followOrNot,
-    e: () => editScene(lab), o: () => lab.own.show(), d: () => lab.changeTheme(), '?': () => byId('help').showModal(),
+    e: () => lab.guarded(editScene(lab)), o: () => lab.own.show(), d: () => lab.changeTheme(), '?': () => byId('help').showModal(),
   };
   document.addEventListener('keydown', (event) => {
     if (document.querySelector('dialog[open]')) return;
