@@ -35,7 +35,7 @@ TABLES = {
     "timing_records.csv": (20261134, 20),
     # Anew, after more than two designs had come to tell noise.
     "refusal_level_again.csv": (20261136, 100),
-    "refusal_pairs_again.csv": (20261138, 100),
+    "refusal_pairs_again.csv": (20261137, 100),
     # Anew, after intervals had become those of profiles.
     "forty_again.csv": (20261135, 40),
 }

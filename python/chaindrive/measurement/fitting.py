@@ -170,12 +170,9 @@ class Fit:
         if found.is_in_doubt and most > 2:
             steps = self.steps
             self.steps = self._evened(jacobian)
-            even = self._identifiability(*self.replicated(x, most))
+            jacobian, noise = self.replicated(x, most)
+            found = self._identifiability(jacobian, noise)
             self.steps = steps
-            # They are short where one parameter moves little, and noise hides more: what two
-            # designs have parted is refused only where even steps leave nothing of it.
-            if even.is_exact or not found.is_identified:
-                found = even
         self._refine(jacobian)
         return found
 

@@ -23,9 +23,6 @@ _FLOORS = 9.0
 #: Multiple of that noise below which two designs leave it in doubt [–]: of two squares over a
 #: variance that two designs tell, one in a hundred is larger (F distribution).
 _DOUBT = 100.0
-#: Multiple of that noise below which even runs of both sides are the same [–] (assumed): the noise
-#: of two parameters that differ is not the same.
-_SAME = 0.1
 #: Effect of half the range, in standard errors of the whole record, below which a parameter does
 #: nothing that is seen [–] (assumed: then even the bounds cannot be told apart).
 _LEAST_EFFECT = 2.0
@@ -78,11 +75,6 @@ class Identifiability:
     def is_in_doubt(self) -> bool:
         """Whether noise of the derivatives may be all that a combination moves, or hide it."""
         return bool((self.eigenvalues < _DOUBT * self.floor).any())
-
-    @property
-    def is_exact(self) -> bool:
-        """Whether steps that move the record alike leave nothing of a combination."""
-        return bool((self.eigenvalues < np.maximum(LEAST_EIGENVALUE, _SAME * self.floor)).any())
 
     @property
     def is_identified(self) -> bool:
