@@ -9,6 +9,7 @@ from typing import Any
 
 from docutils import nodes
 from docutils.parsers.rst import Directive
+from IPython.display import HTML, display
 from sphinx.application import Sphinx
 
 import chaindrive as cd
@@ -17,22 +18,15 @@ from chaindrive.lab_page import PAGE
 WORDS = "Open this drive in the lab: your browser computes it, and you change it while it runs."
 
 
-class Shown:
-    """A link as a notebook shows it; nothing in a build without a lab."""
-
-    def __init__(self, drive: cd.Drive, page: str) -> None:
-        self._link = cd.lab_link(drive, page)
-
-    def _repr_html_(self) -> str:
-        return f'<p><a href="{self._link}">{WORDS}</a></p>' if PAGE.exists() else ""
-
-    def __repr__(self) -> str:
-        return ""
+def paragraph(drive: cd.Drive, page: str) -> str:
+    """Return a paragraph of HTML that opens a drive in the lab at an address."""
+    return f'<p><a href="{cd.lab_link(drive, page)}">{WORDS}</a></p>'
 
 
-def in_lab(drive: cd.Drive) -> Shown:
-    """Show a link to a drive, from a page one folder below the first one."""
-    return Shown(drive, "../lab.html")
+def in_lab(drive: cd.Drive) -> None:
+    """Show a link to a drive, on a page one folder below the first one."""
+    if PAGE.exists():
+        display(HTML(paragraph(drive, "../lab.html")))
 
 
 class LabLink(Directive):
@@ -44,8 +38,8 @@ class LabLink(Directive):
     def run(self) -> list[nodes.Node]:
         if not PAGE.exists():
             return []
-        link = cd.lab_link(getattr(cd.scenes, self.arguments[0])())
-        return [nodes.raw("", f'<p><a href="{link}">{WORDS}</a></p>', format="html")]
+        drive = getattr(cd.scenes, self.arguments[0])()
+        return [nodes.raw("", paragraph(drive, "lab.html"), format="html")]
 
 
 def bring_page(app: Sphinx, failed: Exception | None) -> None:

@@ -11,7 +11,7 @@ use crate::stream::{LEVELS, LEVELS_OF_CURVES, Stream, Streams};
 const PAGE: &str = include_str!("../page/page.html");
 /// Style of pages on which a drive moves: paper, ink, the picture, its legend, plots, buttons.
 pub const STYLE: &str = include_str!("../page/style.css");
-/// What stands upon the picture of such pages: legend, buttons of its scale, the length of a bar, what is followed.
+/// Overlay of the picture on such pages: legend, buttons of its scale, bar of length, card of the followed roller.
 pub const STAGE: &str = include_str!("../page/stage.html");
 /// Programs of such pages, in the order in which they run: colours, axes, the picture, and what it answers to.
 pub const PICTURE: [&str; 4] = [

@@ -73,7 +73,7 @@ class Identifiability:
 
     @property
     def is_in_doubt(self) -> bool:
-        """Whether noise of the derivatives may be all that a combination moves, or hide it."""
+        """Doubt of a combination: its eigenvalue is near the noise of the derivatives."""
         return bool((self.eigenvalues < _DOUBT * self.floor).any())
 
     @property
