@@ -29,13 +29,11 @@ LAW = "contact.teeth.law"
 
 #: Seed and rows of each table.
 TABLES = {
-    "refusal_level.csv": (20261130, 100),
     "refusal_power.csv": (20261131, 180),
-    "refusal_pairs.csv": (20261132, 100),
     "timing_records.csv": (20261134, 20),
-    # Anew, after more than two designs had come to tell noise.
-    "refusal_level_again.csv": (20261136, 100),
-    "refusal_pairs_again.csv": (20261137, 100),
+    # Anew, after runs along a combination had come to tell whether it is identified.
+    "refusal_level.csv": (20261138, 100),
+    "refusal_pairs.csv": (20261139, 100),
     # Anew, after intervals had become those of profiles.
     "forty_again.csv": (20261135, 40),
 }

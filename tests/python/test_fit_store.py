@@ -90,10 +90,6 @@ def test_who_computes_changes_nothing(fit: xr.Dataset, files: Files, tmp_path: P
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(
-    strict=True,
-    reason="refused as not identifiable: even steps are short where one of six moves little",
-)
 def test_six_parameters_of_a_second_cost_at_most_240_s() -> None:
     """Sixty-five runs of a second with their run-in and a start, by central differences."""
     rig = cd.scenes.industrial_16b()

@@ -24,6 +24,11 @@ _Floats = NDArray[np.float64]
 _STEP = 0.05
 #: Step where differences over that are noise, as `check_data` takes it [–].
 _LONG_STEP = 0.2
+#: Longest step along a combination that is in doubt, of any parameter [half ranges] (assumed).
+_FAR = 0.5
+#: How often such a combination is set right at most, and the share of clear ones in it that is
+#: little enough [–].
+_CORRECTIONS, _RIGHT = 3, 0.01
 #: Share by which amplitudes may be off in the first of two fits [–] (assumed).
 _LOOSE = 0.5
 #: Shortest step (assumed): the numbers of a run are rough below.
@@ -152,7 +157,7 @@ class Fit:
         """Return what the record says of parameters at the start; take designs and steps by it.
 
         What is noise over a short step may be clear over a longer one. Where two designs leave it
-        in doubt whether a combination moves anything, all are taken, with even steps.
+        in doubt whether a combination moves anything, runs along it tell.
         """
         x = self._inside(_STEP)
         jacobian, noise = self.replicated(x)
@@ -166,27 +171,69 @@ class Fit:
             else:
                 self.steps = short
         found = self._identifiability(jacobian, noise)
-        most = max(len(it.designs) for it in self.experiments)
-        if found.is_in_doubt and most > 2:
-            steps = self.steps
-            self.steps = self._evened(jacobian)
-            jacobian, noise = self.replicated(x, most)
-            found = self._identifiability(jacobian, noise)
-            self.steps = steps
+        # The clearest first: what it moves is no part of what the others move.
+        for n in np.flatnonzero(found.is_in_doubt)[::-1] if self._designs > 2 else ():
+            is_clear = found.is_clear
+            clear = self._whole(jacobian) @ found.directions[:, is_clear]
+            found = found.seen_along(n, *self._along(n, found.directions, is_clear, clear))
         self._refine(jacobian)
         return found
 
-    def _evened(self, jacobian: _Floats) -> _Floats:
-        """Return steps that move the record alike, none longer than it is.
+    @property
+    def _designs(self) -> int:
+        return max(len(it.designs) for it in self.experiments)
 
-        Two parameters of which the drive knows only the sum or the product then make the same runs,
-        noise and bends included, and nothing is left of their difference.
+    def _along(
+        self, n: int, directions: _Floats, is_clear: NDArray[np.bool_], slopes: _Floats
+    ) -> tuple[_Floats, float, float]:
+        """Return a direction set right, what it moves, squared, and what noise makes of that.
+
+        Both of its ends are run, so that two parameters of which the drive knows only the sum or
+        the product make the same run twice. What it moves as clear directions do shows that it is
+        not quite right: that much of them is taken off it.
+
+        Parameters
+        ----------
+        n
+            Number of the direction.
+        directions
+            All directions (p, p) [half ranges].
+        is_clear
+            Those that are clear (p,).
+        slopes
+            What these move (residuals, clear).
         """
-        moved = self.steps * np.linalg.norm(self._rooted(jacobian), axis=0)
-        # What moves next to nothing does not shorten the steps of the others.
-        moves = moved > _LEAST_STEP
-        even = self.steps * moved[moves].min(initial=np.inf) / np.where(moves, moved, np.inf)
-        return np.where(moves, np.maximum(even, _LEAST_STEP), self.steps)
+        direction = directions[:, n]
+        for _ in range(_CORRECTIONS):
+            moved = np.mean(self._moved(direction, 2), axis=0)
+            mixed, *_ = np.linalg.lstsq(slopes, moved)
+            direction = direction - directions[:, is_clear] @ mixed
+            if np.linalg.norm(mixed) < _RIGHT:
+                break
+        basis, _ = np.linalg.qr(slopes)
+        rows = self._moved(direction, self._designs)
+        rows = rows - (rows @ basis) @ basis.T
+        moved, noise = rows.mean(axis=0), rows.var(axis=0, ddof=1) / len(rows)
+        return direction, float(moved @ moved), float(noise.sum())
+
+    def _moved(self, direction: _Floats, designs: int) -> _Floats:
+        """Return what a direction moves, over as long a step as is taken, (designs, residuals)."""
+        x = self._inside(_FAR)
+        step = _FAR / np.abs(direction).max()
+        by = step * direction * self.half
+        ends = [np.clip(it, self.low, self.high) for it in (x + by, x - by)]
+        rows = []
+        for design in range(designs):
+            above, below = (
+                self._residuals(seen, end)
+                for seen, end in zip(self._all(ends, design), ends, strict=True)
+            )
+            rows.append((above - below) / (2.0 * step))
+        return np.stack(rows)
+
+    def _whole(self, jacobian: _Floats) -> _Floats:
+        """Return derivatives of whitened residuals by half ranges, priors last."""
+        return self.with_priors(self._rooted(jacobian), np.eye(int(self.known.sum())))[0]
 
     def _identifiability(self, jacobian: _Floats, noise: _Floats) -> Identifiability:
         both, covariance = self.with_priors(jacobian, self.errors.covariance)
@@ -200,8 +247,7 @@ class Fit:
 
     def _refine(self, jacobian: _Floats) -> None:
         """Take steps that move the record by about one error, where that is less."""
-        rows, _ = self.with_priors(self._rooted(jacobian), np.eye(int(self.known.sum())))
-        size = np.linalg.norm(rows, axis=0)
+        size = np.linalg.norm(self._whole(jacobian), axis=0)
         self.steps = np.clip(1.0 / np.maximum(size, 1.0), _LEAST_STEP, self.steps)
 
     def features(self, points: Sequence[_Floats], design: int = 0) -> list[_Floats | None]:
@@ -254,16 +300,15 @@ class Fit:
         columns = [(found[2 * n] - found[2 * n + 1]) / width for n, width in enumerate(widths)]
         return np.stack(columns, axis=1)
 
-    def replicated(self, x: _Floats, designs: int = 2) -> tuple[_Floats, _Floats]:
-        """Return derivatives by designs of as many phases: their mean, and its standard error.
+    def replicated(self, x: _Floats) -> tuple[_Floats, _Floats]:
+        """Return derivatives by designs of two phases: their mean, and its standard error.
 
         Of one step, for what bends is no noise. Where no chain has a phase, by one step and by two
         of it, whose difference is more than noise.
         """
-        most = max(len(it.designs) for it in self.experiments)
-        how = [(1.0, it) for it in range(designs)] if most > 1 else [(1.0, 0), (2.0, 0)]
+        how = [(1.0, 0), (1.0, 1)] if self._designs > 1 else [(1.0, 0), (2.0, 0)]
         slopes = [self.derivatives(x, *it) for it in how]
-        return np.mean(slopes, axis=0), np.std(slopes, axis=0, ddof=1) / np.sqrt(len(how))
+        return np.mean(slopes, axis=0), np.std(slopes, axis=0)
 
     def is_noisy(self, jacobian: _Floats, noise: _Floats) -> bool:
         """Tell whether one design is not enough: what a parameter moves is not clear of noise."""

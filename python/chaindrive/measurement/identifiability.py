@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,9 +72,23 @@ class Identifiability:
         return found
 
     @property
-    def is_in_doubt(self) -> bool:
-        """Doubt of a combination: its eigenvalue is near the noise of the derivatives."""
-        return bool((self.eigenvalues < _DOUBT * self.floor).any())
+    def is_in_doubt(self) -> NDArray[np.bool_]:
+        """Directions whose eigenvalue is near the noise of the derivatives (p,)."""
+        return np.asarray(self.eigenvalues < _DOUBT * self.floor)
+
+    @property
+    def is_clear(self) -> NDArray[np.bool_]:
+        """Directions whose eigenvalue is not (p,)."""
+        return np.asarray(self.eigenvalues >= _DOUBT * self.floor)
+
+    def seen_along(
+        self, n: int, direction: _Floats, eigenvalue: float, floor: float
+    ) -> Identifiability:
+        """Return the same where runs along a direction have told it, its eigenvalue and noise."""
+        directions = self.directions.copy()
+        eigenvalues, floors = self.eigenvalues.copy(), self.floor.copy()
+        directions[:, n], eigenvalues[n], floors[n] = direction, eigenvalue, floor
+        return replace(self, directions=directions, eigenvalues=eigenvalues, floor=floors)
 
     @property
     def is_identified(self) -> bool:
