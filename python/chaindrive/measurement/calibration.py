@@ -28,6 +28,7 @@ from chaindrive.measurement.provenance import fitted_drive
 from chaindrive.measurement.series import channel_names
 from chaindrive.measurement.telling import texts, told_calibration
 from chaindrive.measurement.validating import Kept, validated
+from chaindrive.measurement.valleys import searched
 from chaindrive.progress import told
 from chaindrive.settings import Quantity
 from chaindrive.simulation import simulate
@@ -108,7 +109,8 @@ def calibrate(
         none.
     starts
         Starts over the ranges, at least 1: the best of the drive's own and of a Latin hypercube
-        with twice as many points for each parameter of the scene. 1: the drive's own alone.
+        with twice as many points for each parameter of the scene; then valleys that all these runs
+        foretell. 1: the drive's own alone.
     level
         Level of the intervals [–].
     profiles
@@ -356,6 +358,8 @@ def _settled(
 ) -> Settled:
     """Fit; choose anew what was frozen; where that differs, fit once more."""
     optima = fit.optima(starts)
+    if starts > 1:
+        optima = searched(fit, optima)
     known, loss, steps = how
     again = [_anew(it, fit, optima[0]) for it in fit.experiments]
     moved = np.zeros(len(fit.parameters))

@@ -15,7 +15,7 @@ from chaindrive.measurement.free import FreeParameter
 from chaindrive.measurement.identifiability import Identifiability, identifiability
 from chaindrive.measurement.sensitivities import CLEAR
 
-__all__ = ["Fit", "Optimum", "Worth", "chance", "differs", "drawn", "joined", "rooted"]
+__all__ = ["Fit", "Optimum", "Worth", "apart", "chance", "differs", "drawn", "joined", "rooted"]
 
 _Floats = NDArray[np.float64]
 
@@ -93,6 +93,15 @@ def joined(parts: Sequence[Errors]) -> Errors:
         np.concatenate([it.statistical for it in parts]),
         np.concatenate([it.freedom for it in parts]),
     )
+
+
+def apart(optima: Sequence[Optimum], half: _Floats) -> list[Optimum]:
+    """Return optima that are not the same, the best first; of half ranges [SI] (p,)."""
+    found: list[Optimum] = []
+    for it in sorted(optima, key=lambda it: it.cost):
+        if all(np.abs((it.x - one.x) / half).max() > 0.05 for one in found):
+            found.append(it)
+    return found
 
 
 def rooted(covariance: _Floats) -> _Floats:
@@ -225,7 +234,7 @@ class Fit:
         rows = []
         for design in range(designs):
             above, below = (
-                self._residuals(seen, end)
+                self.residual(seen, end)
                 for seen, end in zip(self._all(ends, design), ends, strict=True)
             )
             rows.append((above - below) / (2.0 * step))
@@ -259,6 +268,14 @@ class Fit:
             self._seen |= dict(zip(new, found, strict=True))
             self._tell()
         return [self._seen[key] for key in keys]
+
+    def seen(self) -> list[tuple[_Floats, _Floats]]:
+        """Return the points [SI] that one design has been run at, with the features there."""
+        return [
+            (np.frombuffer(bits), found)
+            for (design, bits), found in self._seen.items()
+            if design == 0 and found is not None
+        ]
 
     def _computed(self, points: Sequence[_Floats], design: int) -> list[_Floats | None]:
         vectors = [self._named(x) for x in points]
@@ -332,12 +349,12 @@ class Fit:
 
     def residuals(self, x: _Floats) -> _Floats:
         """Return whitened residuals, of errors of one, independent of each other; priors last."""
-        return self._residuals(self._all([x], 0)[0], x)
+        return self.residual(self._all([x], 0)[0], x)
 
     def residuals_at(self, points: Sequence[_Floats]) -> list[_Floats | None]:
         """Return whitened residuals of several points [SI]; None where a run fails."""
         rows = zip(points, self.features(points), strict=True)
-        return [None if it is None else self._residuals(it, x) for x, it in rows]
+        return [None if it is None else self.residual(it, x) for x, it in rows]
 
     def starts(self, count: int) -> list[tuple[float, _Floats]]:
         """Return starts over the ranges with their costs, the best of many.
@@ -352,7 +369,7 @@ class Fit:
         points = [self.start, *(self.low + share * (self.high - self.low))]
         rows = zip(points, self.features(points), strict=True)
         found = [
-            (0.5 * float(np.sum(self._residuals(it, x, self._soft) ** 2)), x)
+            (0.5 * float(np.sum(self.residual(it, x, self._soft) ** 2)), x)
             for x, it in rows
             if it is not None
         ]
@@ -373,12 +390,7 @@ class Fit:
             residual = self.residuals(x)
             if not any(self._explains(it, x, residual) for it in found):
                 found.append(self.optimum(x))
-        found.sort(key=lambda it: it.cost)
-        apart: list[Optimum] = []
-        for it in found:
-            if all(np.abs((it.x - one.x) / self.half).max() > 0.05 for one in apart):
-                apart.append(it)
-        return apart
+        return apart(found, self.half)
 
     def optimum(self, start: _Floats, *, is_near: bool = False) -> Optimum:
         """Return where SciPy's bounded least squares end from a start.
@@ -390,7 +402,7 @@ class Fit:
         for root in [self._root] if is_near else [self._soft, self._root]:
             inside = np.clip(x, self.low + 1e-3 * self.half, self.high - 1e-3 * self.half)
             found = extra("scipy.optimize", "fits").least_squares(
-                lambda x, root: self._residuals(self._all([x], 0)[0], x, root),
+                lambda x, root: self.residual(self._all([x], 0)[0], x, root),
                 inside,
                 jac=self._whitened,
                 bounds=(self.low, self.high),
@@ -452,7 +464,7 @@ class Fit:
         covariance = inverse + inverse @ np.diag(moved) @ inverse
         gain = inverse @ np.linalg.solve(self._root.T, rows[: len(jacobian)]).T
         freedom = self._freedom(gain, covariance)
-        full = self._residuals(features, at.x)
+        full = self.residual(features, at.x)
         dof = full.size - len(self.parameters)
         p_value = np.nan
         if dof > 0:
@@ -495,7 +507,8 @@ class Fit:
                 raise SimulationError(message, "free", "narrower bounds")
         return [it for it in found if it is not None]
 
-    def _residuals(self, features: _Floats, x: _Floats, root: _Floats | None = None) -> _Floats:
+    def residual(self, features: _Floats, x: _Floats, root: _Floats | None = None) -> _Floats:
+        """Return whitened residuals of features as a run at a point [SI] has them."""
         root = self._root if root is None else root
         white = np.linalg.solve(root, (features - self.errors.values)[self.known])
         priors = [(x[n] - mean) / deviation for n, mean, deviation in self._priors]

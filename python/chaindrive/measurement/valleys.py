@@ -1,0 +1,120 @@
+"""Other valleys of a fit: where all runs so far, smoothed to a surface, foretell a low χ²."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from chaindrive.extras import extra
+from chaindrive.measurement.fitting import Fit, Optimum, apart
+
+__all__ = ["searched"]
+
+_Floats = NDArray[np.float64]
+
+#: How often the surface is made anew, with runs at the bottoms of its valleys [–] (assumed: it has
+#: settled by then).
+_ROUNDS = 5
+#: Valleys of the surface that are run each time, and fits that go from them, at most [–].
+_RUN, _FITS = 4, 2
+#: Distance of runs that are taken into the surface [half ranges]: what is nearer differs by noise.
+_GRAIN = 0.04
+#: Distance of two valleys [half ranges].
+_APART = 0.2
+#: Multiples of the least χ², and of the number of residuals, below which a valley is worth a fit
+#: [–] (assumed): the surface is a few errors off.
+_WORTH = 3.0
+#: Where the search over the surface begins, beside the best runs: number and seed.
+_BEGINNINGS, _BEST, _SEED = 40, 10, 58
+
+
+class _Valley(NamedTuple):
+    """A valley of the surface."""
+
+    chi2: float
+    x: _Floats
+    """Parameters [SI] (p,)."""
+
+
+def searched(fit: Fit, optima: Sequence[Optimum]) -> list[Optimum]:
+    """Return optima with those of other valleys, the best first.
+
+    Starts that are few miss valleys of a parameter that moves little. All features that runs of a
+    fit have had are interpolated by thin plate splines, whose χ² costs next to nothing. Runs at the
+    bottoms of its valleys set it right, and fits go from those that stay deep and have no optimum.
+
+    References
+    ----------
+    H.-M. Gutmann, *J. Global Optim.* **19**, 2001, 201-227: radial basis functions that foretell
+    where a costly function is least.
+    """
+    found = list(optima)
+    valleys: list[_Valley] = []
+    for _ in range(_ROUNDS):
+        valleys = _valleys(fit)
+        fit.features([it.x for it in valleys])
+    scale = max(2.0 * found[0].cost, float(fit.known.sum()))
+    fits = 0
+    for it in valleys:
+        is_new = all(_distance(fit, it.x, one.x) > _APART for one in found)
+        if is_new and fits < _FITS and it.chi2 < _WORTH * scale:
+            found.append(fit.optimum(it.x, is_near=True))
+            fits += 1
+    return apart(found, fit.half)
+
+
+def _valleys(fit: Fit) -> list[_Valley]:
+    """Return the deepest valleys of the surface through all runs; none where these are few."""
+    points, features = _spread(fit)
+    count = len(fit.parameters)
+    if len(points) <= 2 * count:
+        return []
+    surface = extra("scipy.interpolate", "fits").RBFInterpolator(_unit(fit, points), features)
+    runs = zip(points, features, strict=True)
+    chi2 = [float(np.sum(fit.residual(y, x) ** 2)) for x, y in runs]
+    share = extra("scipy.stats", "fits").qmc.LatinHypercube(count, rng=_SEED).random(_BEGINNINGS)
+    begins = [*(fit.low + share * (fit.high - fit.low)), *points[np.argsort(chi2)[:_BEST]]]
+    found = [_bottom(fit, surface, x) for x in begins]
+    deepest: list[_Valley] = []
+    for it in sorted(found, key=lambda it: it.chi2):
+        if all(_distance(fit, it.x, one.x) > _APART for one in deepest):
+            deepest.append(it)
+    return deepest[:_RUN]
+
+
+def _bottom(fit: Fit, surface: Callable[[_Floats], _Floats], begin: _Floats) -> _Valley:
+    """Return where the χ² of a surface is least, downhill from a point [SI]."""
+    found = extra("scipy.optimize", "fits").least_squares(
+        lambda x: fit.residual(surface(_unit(fit, x[None]))[0], x),
+        np.clip(begin, fit.low + 1e-3 * fit.half, fit.high - 1e-3 * fit.half),
+        bounds=(fit.low, fit.high),
+        x_scale=fit.half,
+        ftol=1e-3,
+        xtol=1e-3,
+        gtol=1e-3,
+    )
+    return _Valley(2.0 * float(found.cost), found.x)
+
+
+def _spread(fit: Fit) -> tuple[_Floats, _Floats]:
+    """Return runs that are not next to each other, the last before the first: points, features."""
+    points: list[_Floats] = []
+    features = []
+    for x, seen in reversed(fit.seen()):
+        if all(_distance(fit, x, it) > _GRAIN for it in points):
+            points.append(x)
+            features.append(seen)
+    return np.array(points), np.array(features)
+
+
+def _unit(fit: Fit, x: _Floats) -> _Floats:
+    """Return points [SI] in half ranges."""
+    return np.asarray(x / fit.half)
+
+
+def _distance(fit: Fit, x: _Floats, other: _Floats) -> float:
+    """Return the largest difference of two points [half ranges]."""
+    return float(np.abs((x - other) / fit.half).max())
