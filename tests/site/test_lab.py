@@ -220,6 +220,7 @@ def test_a_span_is_pulled_at(page):
 
 def test_teeth_that_open_the_loop_close_it_with_other_links(page):
     preset(page, "industrial_16b")
+    until(page, "lab.lab.history.length > 20")
     choose(page, "sprockets[0].teeth", 21)
     assert "closes the loop" in message(page)
     assert page.evaluate("lab.lab.facts.sprockets[0].teeth") == 21
@@ -359,7 +360,7 @@ def test_a_link_takes_what_sliders_have_set_while_it_moves(page, opened):
     choose(page, "centre driven x", 1)
     page.click("#link")
     until(page, "location.hash.length > 20")
-    assert "without driven in x" in message(page)
+    assert "without driven moved in x" in message(page)
     # The drive that moves is as it was opened.
     assert page.evaluate("lab.lab.scene.text") == before
     other = opened(page.evaluate("location.hash"))
@@ -455,6 +456,98 @@ def test_a_drive_of_ones_own_moves(page):
     assert page.inner_text("#title") == "A drive of one's own"
     assert page.evaluate("lab.lab.film.bodies.filter((it) => it.kind === 'sprocket').length") == 3
     moves(page)
+
+
+def laid(page):
+    until(page, "document.querySelector('#own-fits .first:enabled') !== null")
+
+
+def write_cell(page, label, value):
+    cell = page.get_by_label(label, exact=True)
+    cell.fill(str(value))
+    cell.press("Tab")
+
+
+def test_any_legal_plan_tells_which_links_close_it(page):
+    """Of 17 and 34 teeth at 600 mm no number of links closes: it is said which do, where they do."""
+    page.click("#own")
+    laid(page)
+    for teeth in (17, 21):
+        write_cell(page, "teeth of driver", teeth)
+        laid(page)
+        assert "pitches" in page.inner_text("#own-state")
+    write_cell(page, "x in mm of driven", 617.3)
+    page.click("#own-run")
+    until(page, "!document.getElementById('own-drive').open")
+    moves(page)
+
+
+@pytest.mark.parametrize(
+    ("label", "value", "words"),
+    [
+        ("teeth of driver", "100000", "teeth of driver: a number from 6 to 300"),
+        ("teeth of driver", "", "teeth of driver: a number from 6 to 300"),
+        ("x in mm of driven", "100", "overlaps"),
+    ],
+)
+def test_a_wrong_entry_of_a_plan_is_told(page, label, value, words):
+    page.click("#own")
+    laid(page)
+    write_cell(page, label, value)
+    until(page, f"document.getElementById('own-state').textContent.includes({words!r})")
+    if words == "overlaps":
+        assert "sprockets" in page.inner_text("#own-state")
+        assert page.locator("#own-run").is_disabled()
+
+
+def test_nothing_of_the_sheet_moves_under_the_mouse(page):
+    def places():
+        boxes = (page.locator(f"#{it}").bounding_box() for it in ("own-idler", "own-run"))
+        return [(it["x"], it["y"]) for it in boxes]
+
+    page.click("#own")
+    laid(page)
+    before = places()
+    page.click("#own-idler")
+    page.click("#own-sprocket")
+    laid(page)
+    assert places() == before
+    write_cell(page, "x in mm of driven", 10)
+    until(page, "document.getElementById('own-state').className === 'bad'")
+    assert places() == before
+
+
+def test_a_plan_comes_back_with_its_drive(page, opened):
+    page.click("#own")
+    laid(page)
+    write_cell(page, "teeth of driver", 23)
+    page.click("#own-idler")
+    page.click("#own-guide")
+    laid(page)
+    page.click("#own-run")
+    until(page, "!document.getElementById('own-drive').open")
+    settles(page)
+    choose(page, "speed driver", 240)
+    page.click("#link")
+    until(page, "location.hash.length > 20")
+    other = opened(page.evaluate("location.hash"))
+    other.click("#own")
+    until(other, "document.getElementById('own-state').textContent.includes('closes with')")
+    plans = [it.evaluate("lab.lab.own.plan.wheels.map((it) => it.teeth)") for it in (page, other)]
+    assert plans[0] == plans[1] == [23, 38, 17]
+    assert other.get_by_label("speed in rpm of driver").input_value() == "240"
+    # A drive that no sheet holds leaves the sheet as it is.
+    other.keyboard.press("Escape")
+    preset(other, "timing_drive")
+    other.click("#own")
+    until(other, "document.getElementById('own-drive').open")
+    assert other.evaluate("lab.lab.own.plan.wheels.length") == 3
+
+
+def test_a_chain_that_would_break_is_told(page):
+    preset(page, "industrial_16b")
+    write_cell(page, "pretension in N", 200_000)
+    until(page, "document.getElementById('message-text').textContent.includes('breaks at')")
 
 
 def test_a_wheel_is_dragged(page):

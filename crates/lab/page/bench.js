@@ -81,6 +81,7 @@ function tellHorizon(lab) {
   const text = byId('horizon');
   byId('further').hidden = true;
   text.className = '';
+  text.title = 'A twin of the drive starts a hair beside it; as long as both move alike, waves are those of the drive and not of rounding';
   if (!horizon) return;
   if (horizon.busy) {
     text.textContent = `How long waveforms can be believed: following a twin for ${quantity(horizon.follow, 's')} …`;
@@ -94,12 +95,12 @@ function tellHorizon(lab) {
   byId('horizon-sentence').textContent = `${horizon.sentence[0].toUpperCase()}${horizon.sentence.slice(1)}.`;
   if (horizon.time === null) {
     text.textContent = time < horizon.follow ? `Waveforms can be believed for ${quantity(horizon.follow, 's')} at least.`
-      : `Waveforms can be believed for ${quantity(horizon.follow, 's')} at least; nobody has looked beyond.`;
+      : `Waveforms can be believed for ${quantity(horizon.follow, 's')} at least; followed no further.`;
   } else if (time < horizon.time) {
     text.textContent = `Waveforms can be believed for ${quantity(horizon.time, 's')}; after that means and orders only.`;
   } else {
     text.className = 'caution';
-    text.textContent = `Past ${quantity(horizon.time, 's')}: believe means and orders, no longer single waves.`;
+    text.textContent = `Past ${quantity(horizon.time, 's')}, where curves are shaded: believe means and orders, no longer single waves.`;
   }
   // Inputs that are changed while it moves have the same horizon after the change, of which nobody knows more.
   byId('horizon-of').textContent = lab.sliders.changes.some((it) => !it.path)

@@ -147,9 +147,10 @@ class Scrolls {
     this.toldAt = now;
     const moment = this.pointer === null ? history.end : range[0] + this.pointer * (range[1] - range[0]);
     const at = Math.min(history.length - 1, history.before(moment));
-    for (const { curves } of this.plots) {
+    for (const { curves, factor = 1 } of this.plots) {
       for (const { index, value } of curves) {
-        put(value, at >= 0 ? withMinus(short(history.series[index][at])) : '');
+        // In the unit of the axis.
+        put(value, at >= 0 ? withMinus(short(history.series[index][at] / factor)) : '');
       }
     }
   }
@@ -227,9 +228,6 @@ class Scrolls {
     c.setLineDash([4, 4]);
     this.drawUpright(c, plot, at, colours.faint);
     c.setLineDash([]);
-    c.textAlign = 'left';
-    c.textBaseline = 'top';
-    c.fillText('means and orders only', at + 4, plot.top + 1);
   }
 }
 

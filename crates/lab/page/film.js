@@ -36,6 +36,18 @@ class LiveFilm {
     this.take(frame);
   }
 
+  /** Largest share of what its chain holds that a link is pulled with, and its tension [N]; of breaking loads [N]. */
+  hardestPull(loads) {
+    let found = { share: 0, tension: 0 };
+    this.chains.forEach((chain, i) => {
+      const tensions = this.arrays.link_tension.values.subarray(chain.firstLink, this.chains[i + 1]?.firstLink);
+      const tension = tensions.reduce((most, it) => Math.max(most, it), 0);
+      const share = tension / (loads[i] ?? Infinity);
+      if (share > found.share) found = { share, tension };
+    });
+    return found;
+  }
+
   take(frame) {
     this.arrays = Object.fromEntries(Object.entries(frame).map(([name, values]) => [name, new Live(values)]));
     ['body_x', 'body_y', 'body_angle'].forEach((name, axis) => {

@@ -70,7 +70,7 @@ function liveInputs(facts) {
     const reach = centreReach(facts);
     for (const axis of ['x', 'y']) {
       inputs.push({
-        group: 'Centres', key: `centre ${name} ${axis}`, label: `${name} in ${axis}`, hint: 'from where it stands; it goes there within four pitches, without a jerk of speed',
+        group: 'Centres', key: `centre ${name} ${axis}`, label: `${name} moved in ${axis}`, hint: 'from where it stands; it goes there within four pitches, without a jerk of speed',
         unit: 'mm', factor: 1e3, range: [-reach, reach], start: 0, over: 4 * (mesh ?? sampling(facts) * IN_A_PITCH),
         move: { kind: `centre_${axis}`, name },
       });
@@ -183,7 +183,10 @@ class Sliders {
     this.show(input);
     const take = (text, done) => {
       const value = Number(text) / factor;
-      if (text === '' || !Number.isFinite(value)) return this.show(input);
+      if (text === '' || !Number.isFinite(value)) {
+        tell(`${label}: write a number; it stays as it was.`, 'doubt');
+        return this.show(input);
+      }
       const within = whole ? Math.round(value) : value;
       return this.choose(input, within, done);
     };

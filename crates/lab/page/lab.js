@@ -404,6 +404,15 @@ class Lab {
     }
   }
 
+  /** Tells once that a chain is pulled harder than it holds: it moves on, which no chain would. */
+  warnOfBreaking() {
+    if (this.warned === this.opened) return;
+    const { share, tension } = this.film.hardestPull(this.facts.chains.map((it) => it.breaking_load));
+    if (share <= 1) return;
+    this.warned = this.opened;
+    tell(`A link is pulled with ${quantity(tension, 'N')} at t = ${quantity(this.time, 's')}, and the chain breaks at ${quantity(tension / share, 'N')}: what goes on here no chain lives to see.`, 'bad');
+  }
+
   setPace(pace) {
     // The nearest of those that can be chosen.
     const away = (it) => Math.abs(Math.log(it * pace));
@@ -446,7 +455,9 @@ class Lab {
     this.toldAt = now;
     this.tellSpeeds();
     const [slack, tight] = this.view.tension;
-    tellTension(this.view, [quantity(slack, 'N', 2), quantity(tight, 'N', 2)]);
+    // What is rounding beside the tight side is slack.
+    tellTension(this.view, [quantity(Math.abs(slack) < 1e-4 * tight ? 0 : slack, 'N', 2), quantity(tight, 'N', 2)]);
+    this.warnOfBreaking();
     byId('force').hidden = !(this.view.largestForce > 0);
     tellLengths(this.view);
     tellRoller(this.view, this.view.followed);

@@ -36,9 +36,25 @@ class OwnDrive {
         byId('own-type').add(new Option(`${name}${also} · ${+(1e3 * pitch).toPrecision(5)} mm`, name));
       }
     }
+    const { plan } = this;
+    await this.takeShown();
     byId('own-type').value = this.plan.type;
     if (!this.dialog.open) this.dialog.showModal();
-    this.change();
+    this.fill();
+    if (this.plan === plan) this.plan.links = null;
+    this.lay();
+  }
+
+  /** Takes the drive that moves where it was laid out on such a sheet: from a file, a link, or with changes since. */
+  async takeShown() {
+    const { scene } = this.lab;
+    if (!scene || scene === this.shown) return;
+    this.shown = scene;
+    const plan = Plan.of(this.plan.chains, scene.resolved);
+    if (!plan) return;
+    // Nothing of it is lost: its text is read as the same drive. How long it runs follows from its speed.
+    const again = await this.lab.core.ask('read', { text: plan.text(), name: 'own drive' }).catch(() => null);
+    if (again && alike({ ...again.resolved, run: null }, { ...scene.resolved, run: null })) this.plan = plan;
   }
 
   /** Lays the plan anew after something has changed; rows are made anew unless one is being written in. */
@@ -73,6 +89,9 @@ class OwnDrive {
         it[key] = whole ? Math.round(value) : value;
         after?.(before);
         this.change(Boolean(text));
+      } else {
+        const bounds = [least === undefined ? '' : ` from ${scale * least}`, most === undefined ? '' : ` to ${scale * most}`].join('');
+        this.say(`${label} of ${it.name}: ${text ? 'a name that no other has' : `a number${bounds}`}, so it stays as it was.`, 'bad');
       }
       input.value = shown();
     };
@@ -153,22 +172,27 @@ class OwnDrive {
     // What closed the loop before the change may not close it now.
     for (const button of byId('own-fits').children) button.disabled = true;
     this.wanted = true;
-    if (this.laying) return;
-    this.laying = true;
+    this.laying ??= this.layAnew().finally(() => {
+      this.laying = null;
+    });
+    await this.laying;
+  }
+
+  async layAnew() {
     while (this.wanted) {
       this.wanted = false;
       const { plan } = this;
       try {
-        const about = await this.lab.core.ask('read', { text: plan.text(), name: 'own drive' });
+        // Any number of links shows where the chain lies, and which ones close.
+        const about = await this.lab.core.ask('read', { text: plan.text(null, plan.links ?? plan.roughLinks), name: 'own drive' });
         [this.layout] = about.layout ?? [null];
         this.problem = about.unlaid;
         if (this.layout) this.fits = await this.fitsOf(plan);
       } catch (error) {
         this.layout = null;
-        this.problem = (error.problems ?? []).map((it) => it.message).join('; ') || error.message;
+        this.problem = told(error);
       }
     }
-    this.laying = false;
     this.tellLayout();
     this.draw();
   }
@@ -208,13 +232,12 @@ class OwnDrive {
     const place = byId('own-fits');
     place.replaceChildren();
     byId('own-run').disabled = !layout;
-    byId('own-state').className = layout ? '' : 'bad';
     if (!layout) {
-      byId('own-state').textContent = this.problem || 'This cannot be laid out.';
+      this.say(this.problem || 'This cannot be laid out.', 'bad');
       return;
     }
     const { pitches } = layout.counts;
-    byId('own-state').textContent = this.isClosed ? `The loop closes with ${plan.links} links.` : `The chain's way takes ${pitches.toFixed(2)} pitches.`;
+    this.say(this.isClosed ? `The loop closes with ${plan.links} links.` : `The chain's way takes ${pitches.toFixed(2)} pitches.`);
     if (this.isClosed) return;
     // Four are enough to choose from.
     for (const fit of this.sorted.slice(0, 4)) {
@@ -230,6 +253,12 @@ class OwnDrive {
     }
   }
 
+  /** Writes a line under the plan. */
+  say(text, how = '') {
+    byId('own-state').className = how;
+    byId('own-state').textContent = text;
+  }
+
   /** Moves a wheel to where a number of links closes. */
   close(fit) {
     const wheel = this.plan.wheels.find((it) => it.name === fit.body);
@@ -240,13 +269,14 @@ class OwnDrive {
   }
 
   async run() {
+    // What was written last may be on its way still.
+    await this.laying;
     if (!this.isClosed && this.best) await this.close(this.best);
     try {
       await this.open({ text: this.plan.text(), name: 'own drive' });
       this.dialog.close();
     } catch (error) {
-      byId('own-state').className = 'bad';
-      byId('own-state').textContent = error.message;
+      this.say(told(error), 'bad');
     }
   }
 

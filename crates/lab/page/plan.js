@@ -32,6 +32,25 @@ class Plan {
     this.load();
   }
 
+  /** The plan of a scene that was read, as far as a plan can hold it: whose text may say less than the scene. */
+  static of(chains, { chain, sprockets = [], guides = [] }) {
+    const plan = new Plan(chains);
+    const wheels = sprockets.map(({ name, teeth, centre: [x, y], side, motion, load }) => {
+      const wheel = { name, teeth, x, y, isChosen: true };
+      if (motion) return { ...wheel, role: 'drives', value: +(RPM * motion.speed).toPrecision(9) };
+      const torque = Math.abs(meanTorque(list(load)));
+      if (list(load).length) return { ...wheel, role: 'driven', value: +torque.toPrecision(9) };
+      return { ...wheel, role: side === 'right' ? 'outside' : 'idler', value: 0 };
+    });
+    const isPlain = chains.some((it) => it.name === chain?.type) && wheels.length > 1
+      && wheels.filter((it) => it.role === 'drives').length === 1 && guides.every((it) => it.face.kind === 'on-span');
+    if (!isPlain) return null;
+    return Object.assign(plan, {
+      type: chain.type, links: chain.links, wheels,
+      guides: guides.map(({ name, face }) => ({ name, after: face.between[0], from: 100 * face.from, to: 100 * face.to, bow: face.bow ?? 0 })),
+    });
+  }
+
   get chain() {
     return this.chains.find((it) => it.name === this.type);
   }
@@ -159,13 +178,20 @@ class Plan {
     return [(sign * dx) / length, (sign * dy) / length];
   }
 
+  /** About as many links as the loop takes: p n ≈ Σ lengths of spans + p Σ z / N, of N wheels; even. */
+  get roughLinks() {
+    const spans = this.spans.reduce((sum, it) => sum + it.length, 0) / this.chain.pitch;
+    const around = this.wheels.reduce((sum, it) => sum + it.teeth, 0) / this.wheels.length;
+    return Math.max(4, 2 * Math.round(0.5 * (spans + around)));
+  }
+
   /** The text of the scene; a mover goes wherever the links close. */
-  text(mover = null) {
+  text(mover = null, links = this.links) {
     const { chain, order } = this;
     const millimetres = (value) => `"${+(1e3 * value).toFixed(4)} mm"`;
     const lines = ['# Laid out in the lab. What is called assumed there nobody has measured: put in what you know.', '', 'title = "A drive of one\'s own"', '',
       '[chain]', `type = ${JSON.stringify(chain.name)}`];
-    if (this.links && !mover) lines.push(`links = ${this.links}`);
+    if (links && !mover) lines.push(`links = ${links}`);
     lines.push('damping_ratio = 0.03 # assumed: no measured value is published, 0.01 to 0.05 are in use');
     for (const wheel of this.wheels) {
       lines.push('', '[[sprockets]]', `name = ${JSON.stringify(wheel.name)}`, `teeth = ${wheel.teeth}`, `centre = [${millimetres(wheel.x)}, ${millimetres(wheel.y)}]`);
@@ -203,6 +229,14 @@ class Plan {
     lines.push('', '[run]', `until = "${+(5 * turn).toPrecision(3)} s"`, `every = "${+(1e3 * turn / driver.teeth / 64).toPrecision(3)} ms"`, '');
     return lines.join('\n');
   }
+}
+
+/** Whether two scenes that were read say the same, but for the rounding of numbers. */
+function alike(one, other) {
+  if (typeof one === 'number' && typeof other === 'number') return Math.abs(one - other) <= 1e-6 * Math.max(Math.abs(one), Math.abs(other), 1e-6);
+  if (typeof one !== 'object' || typeof other !== 'object' || !one || !other) return one === other;
+  const keys = Object.keys(one);
+  return keys.length === Object.keys(other).length && keys.every((key) => alike(one[key], other[key]));
 }
 
 /** A length to a hundredth of a millimetre. */

@@ -36,7 +36,7 @@ function drawAxes(c, plot, colours, values, [start, end]) {
   const texts = ticks.map((tick) => withMinus(+(tick / factor).toPrecision(6)));
   // The widest number has room, sign included.
   const widest = Math.max(0, ...texts.map((text) => c.measureText(text).width));
-  Object.assign(plot, { left: Math.max(50, widest + 10), right: width - 12, top: 8, bottom: height - 20 });
+  Object.assign(plot, { factor, left: Math.max(50, widest + 10), right: width - 12, top: 8, bottom: height - 20 });
   const y = (value) => plot.bottom - ((value - low) / (high - low)) * (plot.bottom - plot.top);
   const x = (time) => plot.left + ((time - start) / (end - start || 1)) * (plot.right - plot.left);
   c.fillStyle = colours.faint;
