@@ -33,7 +33,7 @@ TABLES = {
     "timing_records.csv": (20261134, 20),
     # Anew, after runs along a combination had come to tell whether it is identified.
     "refusal_level.csv": (20261138, 100),
-    "refusal_pairs.csv": (20261139, 100),
+    "refusal_pairs.csv": (20261140, 100),
     # Anew, after intervals had become those of profiles.
     "forty_again.csv": (20261135, 40),
 }

@@ -469,7 +469,7 @@ def write_cell(page, label, value):
 
 
 def test_any_legal_plan_tells_which_links_close_it(page):
-    """Of 17 and 34 teeth at 600 mm no number of links closes: it is said which do, where they do."""
+    """Of 17 and 38 teeth at 600 mm no number of links closes as it stands."""
     page.click("#own")
     laid(page)
     for teeth in (17, 21):

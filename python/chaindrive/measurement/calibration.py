@@ -109,8 +109,8 @@ def calibrate(
         none.
     starts
         Starts over the ranges, at least 1: the best of the drive's own and of a Latin hypercube
-        with twice as many points for each parameter of the scene; then valleys that all these runs
-        foretell. 1: the drive's own alone.
+        with twice as many points for each parameter of the scene; then other valleys that these
+        runs foretell, unless the loss is robust. 1: the drive's own alone.
     level
         Level of the intervals [–].
     profiles
@@ -357,10 +357,10 @@ def _settled(
     fit: Fit, starts: int, level: float, how: tuple[Any, str, Callable[[], object]]
 ) -> Settled:
     """Fit; choose anew what was frozen; where that differs, fit once more."""
-    optima = fit.optima(starts)
-    if starts > 1:
-        optima = searched(fit, optima)
     known, loss, steps = how
+    optima = fit.optima(starts)
+    if starts > 1 and loss == "linear":
+        optima = searched(fit, optima)
     again = [_anew(it, fit, optima[0]) for it in fit.experiments]
     moved = np.zeros(len(fit.parameters))
     if any(new is not old for new, old in zip(again, fit.experiments, strict=True)):

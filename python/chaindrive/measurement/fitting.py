@@ -24,10 +24,11 @@ _Floats = NDArray[np.float64]
 _STEP = 0.05
 #: Step where differences over that are noise, as `check_data` takes it [–].
 _LONG_STEP = 0.2
-#: Longest step along a combination that is in doubt, of any parameter [half ranges] (assumed).
-_FAR = 0.5
-#: How often such a combination is set right at most, and the share of clear ones in it that is
-#: little enough [–].
+#: Longest step along a combination that is in doubt, of any parameter [half ranges] (assumed), and
+#: the shares of it that are taken where runs fail.
+_FAR, _SHARES = 0.5, (1.0, 0.5, 0.25, 0.1)
+#: How often clear combinations are taken off such a one at most, and how much of them is little
+#: enough [–].
 _CORRECTIONS, _RIGHT = 3, 0.01
 #: Share by which amplitudes may be off in the first of two fits [–] (assumed).
 _LOOSE = 0.5
@@ -166,25 +167,21 @@ class Fit:
         """Return what the record says of parameters at the start; take designs and steps by it.
 
         What is noise over a short step may be clear over a longer one. Where two designs leave it
-        in doubt whether a combination moves anything, runs along it tell.
+        in doubt whether a combination moves anything, runs along it decide.
         """
-        x = self._inside(_STEP)
-        jacobian, noise = self.replicated(x)
+        jacobian, noise = self.replicated(self._inside(_STEP))
         self.designs = 1 + self.is_noisy(jacobian, noise)
         if self.designs > 1:
             short = self.steps
             self.steps = np.full(len(self.parameters), _LONG_STEP)
             longer, quieter = self.replicated(self._inside(_LONG_STEP))
             if self._chaos(quieter).max() < self._chaos(noise).max():
-                x, jacobian, noise = self._inside(_LONG_STEP), longer, quieter
+                jacobian, noise = longer, quieter
             else:
                 self.steps = short
         found = self._identifiability(jacobian, noise)
-        # The clearest first: what it moves is no part of what the others move.
-        for n in np.flatnonzero(found.is_in_doubt)[::-1] if self._designs > 2 else ():
-            is_clear = found.is_clear
-            clear = self._whole(jacobian) @ found.directions[:, is_clear]
-            found = found.seen_along(n, *self._along(n, found.directions, is_clear, clear))
+        if self._designs > 2:
+            found = self._seen_along(found, self._whole(jacobian))
         self._refine(jacobian)
         return found
 
@@ -192,53 +189,58 @@ class Fit:
     def _designs(self) -> int:
         return max(len(it.designs) for it in self.experiments)
 
-    def _along(
-        self, n: int, directions: _Floats, is_clear: NDArray[np.bool_], slopes: _Floats
-    ) -> tuple[_Floats, float, float]:
-        """Return a direction set right, what it moves, squared, and what noise makes of that.
+    def _seen_along(self, found: Identifiability, jacobian: _Floats) -> Identifiability:
+        """Return the same, with combinations that are in doubt told by runs along them.
 
-        Both of its ends are run, so that two parameters of which the drive knows only the sum or
-        the product make the same run twice. What it moves as clear directions do shows that it is
-        not quite right: that much of them is taken off it.
+        The ends of such a combination are run, so that two parameters of which the drive knows only
+        the sum or the product make the same run twice. The clearest comes first: where another one
+        moves the record as it does, it holds some of it, which is taken off.
 
         Parameters
         ----------
-        n
-            Number of the direction.
-        directions
-            All directions (p, p) [half ranges].
-        is_clear
-            Those that are clear (p,).
-        slopes
-            What these move (residuals, clear).
+        found
+            By derivatives of two designs.
+        jacobian
+            These, of whitened residuals by half ranges (residuals, p).
         """
-        direction = directions[:, n]
-        for _ in range(_CORRECTIONS):
-            moved = np.mean(self._moved(direction, 2), axis=0)
-            mixed, *_ = np.linalg.lstsq(slopes, moved)
-            direction = direction - directions[:, is_clear] @ mixed
-            if np.linalg.norm(mixed) < _RIGHT:
-                break
-        basis, _ = np.linalg.qr(slopes)
-        rows = self._moved(direction, self._designs)
-        rows = rows - (rows @ basis) @ basis.T
-        moved, noise = rows.mean(axis=0), rows.var(axis=0, ddof=1) / len(rows)
-        return direction, float(moved @ moved), float(noise.sum())
+        size = np.linalg.norm(jacobian, axis=0)
+        slopes = jacobian @ found.directions
+        for n in np.flatnonzero(found.is_in_doubt)[::-1]:
+            clear = found.is_clear
+            direction = found.directions[:, n]
+            for _ in range(_CORRECTIONS):
+                moved = self._moved(direction, 2).mean(axis=0)
+                held, *_ = np.linalg.lstsq(slopes[:, clear], moved)
+                direction = direction - found.directions[:, clear] @ held
+                direction = direction / np.linalg.norm(direction * size)
+                if np.linalg.norm(held) < _RIGHT:
+                    break
+            rows = self._moved(direction, self._designs)
+            slopes[:, n] = rows.mean(axis=0)
+            # λ = |P r|², P without the slopes of clear combinations, r the mean of the designs.
+            basis, _ = np.linalg.qr(slopes[:, clear])
+            rows = rows - (rows @ basis) @ basis.T
+            moved, noise = rows.mean(axis=0), rows.var(axis=0, ddof=1) / len(rows)
+            found = found.seen_along(n, direction, float(moved @ moved), float(noise.sum()))
+        return found
 
     def _moved(self, direction: _Floats, designs: int) -> _Floats:
-        """Return what a direction moves, over as long a step as is taken, (designs, residuals)."""
+        """Return slopes along a direction, over as long a step as runs, (designs, residuals)."""
         x = self._inside(_FAR)
-        step = _FAR / np.abs(direction).max()
-        by = step * direction * self.half
-        ends = [np.clip(it, self.low, self.high) for it in (x + by, x - by)]
-        rows = []
-        for design in range(designs):
-            above, below = (
-                self.residual(seen, end)
-                for seen, end in zip(self._all(ends, design), ends, strict=True)
-            )
-            rows.append((above - below) / (2.0 * step))
-        return np.stack(rows)
+        for share in _SHARES:
+            step = share * _FAR / np.abs(direction).max()
+            by = step * direction * self.half
+            ends = [np.clip(it, self.low, self.high) for it in (x + by, x - by)]
+            found = [self.residuals_at(ends, design) for design in range(designs)]
+            rows = [
+                (above - below) / (2.0 * step)
+                for above, below in found
+                if above is not None and below is not None
+            ]
+            if len(rows) == designs:
+                return np.stack(rows)
+        message = "combinations of the parameters cannot be simulated beside the start"
+        raise SimulationError(message, "free", "narrower bounds")
 
     def _whole(self, jacobian: _Floats) -> _Floats:
         """Return derivatives of whitened residuals by half ranges, priors last."""
@@ -351,9 +353,9 @@ class Fit:
         """Return whitened residuals, of errors of one, independent of each other; priors last."""
         return self.residual(self._all([x], 0)[0], x)
 
-    def residuals_at(self, points: Sequence[_Floats]) -> list[_Floats | None]:
+    def residuals_at(self, points: Sequence[_Floats], design: int = 0) -> list[_Floats | None]:
         """Return whitened residuals of several points [SI]; None where a run fails."""
-        rows = zip(points, self.features(points), strict=True)
+        rows = zip(points, self.features(points, design), strict=True)
         return [None if it is None else self.residual(it, x) for x, it in rows]
 
     def starts(self, count: int) -> list[tuple[float, _Floats]]:

@@ -38,8 +38,8 @@ class Identifiability:
     information: _Floats
     """Fisher information ``F = Jᵀ C⁻¹ J`` of parameters scaled by half their range (p, p) [–]."""
     eigenvalues: _Floats
-    """Of the information with a unit diagonal, ascending (p,) [–]; NaN where a parameter does
-    nothing."""
+    """Of the information with a unit diagonal (p,) [–], ascending by derivatives alone; NaN where a
+    parameter does nothing."""
     directions: _Floats
     """Their directions (p, p), a column each, in parameters scaled by half their range."""
     floor: _Floats

@@ -1,4 +1,4 @@
-"""Other valleys of a fit: where all runs so far, smoothed to a surface, foretell a low χ²."""
+"""Other valleys of a fit, on a surface that is interpolated through all of its runs."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from chaindrive.errors import SimulationError
 from chaindrive.extras import extra
 from chaindrive.measurement.fitting import Fit, Optimum, apart
 
@@ -20,12 +21,12 @@ _Floats = NDArray[np.float64]
 _ROUNDS = 5
 #: Valleys of the surface that are run each time, and fits that go from them, at most [–].
 _RUN, _FITS = 4, 2
-#: Distance of runs that are taken into the surface [half ranges]: what is nearer differs by noise.
+#: Distance of runs that are taken into the surface [half ranges]: nearer ones differ by noise.
 _GRAIN = 0.04
 #: Distance of two valleys [half ranges].
 _APART = 0.2
-#: Multiples of the least χ², and of the number of residuals, below which a valley is worth a fit
-#: [–] (assumed): the surface is a few errors off.
+#: Multiple of the least χ², or of the number of residuals, below which a bottom is worth a fit [–]
+#: (assumed): the surface is a few errors off.
 _WORTH = 3.0
 #: Where the search over the surface begins, beside the best runs: number and seed.
 _BEGINNINGS, _BEST, _SEED = 40, 10, 58
@@ -42,9 +43,9 @@ class _Valley(NamedTuple):
 def searched(fit: Fit, optima: Sequence[Optimum]) -> list[Optimum]:
     """Return optima with those of other valleys, the best first.
 
-    Starts that are few miss valleys of a parameter that moves little. All features that runs of a
-    fit have had are interpolated by thin plate splines, whose χ² costs next to nothing. Runs at the
-    bottoms of its valleys set it right, and fits go from those that stay deep and have no optimum.
+    A few starts miss valleys of a parameter that moves little. Thin plate splines interpolate the
+    features of all runs so far, and their χ² costs next to nothing. Runs at the bottoms of its
+    valleys set it right; fits go from bottoms that are deep and have no optimum.
 
     References
     ----------
@@ -52,17 +53,22 @@ def searched(fit: Fit, optima: Sequence[Optimum]) -> list[Optimum]:
     where a costly function is least.
     """
     found = list(optima)
-    valleys: list[_Valley] = []
+    bottoms: list[_Floats] = []
     for _ in range(_ROUNDS):
-        valleys = _valleys(fit)
-        fit.features([it.x for it in valleys])
-    scale = max(2.0 * found[0].cost, float(fit.known.sum()))
+        bottoms = [it.x for it in _valleys(fit)]
+        fit.features(bottoms)
+    deepest = _WORTH * max(2.0 * found[0].cost, float(fit.known.sum()))
     fits = 0
-    for it in valleys:
-        is_new = all(_distance(fit, it.x, one.x) > _APART for one in found)
-        if is_new and fits < _FITS and it.chi2 < _WORTH * scale:
-            found.append(fit.optimum(it.x, is_near=True))
+    for x, residual in zip(bottoms, fit.residuals_at(bottoms), strict=True):
+        is_new = all(_distance(fit, x, one.x) > _APART for one in found)
+        is_deep = residual is not None and float(residual @ residual) < deepest
+        if is_new and is_deep and fits < _FITS:
             fits += 1
+            try:
+                found.append(fit.optimum(x, is_near=True))
+            except SimulationError:
+                # A way that leads where nothing runs leads to no optimum.
+                continue
     return apart(found, fit.half)
 
 
@@ -72,7 +78,7 @@ def _valleys(fit: Fit) -> list[_Valley]:
     count = len(fit.parameters)
     if len(points) <= 2 * count:
         return []
-    surface = extra("scipy.interpolate", "fits").RBFInterpolator(_unit(fit, points), features)
+    surface = extra("scipy.interpolate", "fits").RBFInterpolator(points / fit.half, features)
     runs = zip(points, features, strict=True)
     chi2 = [float(np.sum(fit.residual(y, x) ** 2)) for x, y in runs]
     share = extra("scipy.stats", "fits").qmc.LatinHypercube(count, rng=_SEED).random(_BEGINNINGS)
@@ -86,17 +92,18 @@ def _valleys(fit: Fit) -> list[_Valley]:
 
 
 def _bottom(fit: Fit, surface: Callable[[_Floats], _Floats], begin: _Floats) -> _Valley:
-    """Return where the χ² of a surface is least, downhill from a point [SI]."""
+    """Return the place where the χ² of a surface is least, downhill from a point [SI]."""
     found = extra("scipy.optimize", "fits").least_squares(
-        lambda x: fit.residual(surface(_unit(fit, x[None]))[0], x),
-        np.clip(begin, fit.low + 1e-3 * fit.half, fit.high - 1e-3 * fit.half),
-        bounds=(fit.low, fit.high),
-        x_scale=fit.half,
+        lambda u: fit.residual(surface(u[None])[0], u * fit.half),
+        np.clip(begin, fit.low + 1e-3 * fit.half, fit.high - 1e-3 * fit.half) / fit.half,
+        bounds=(fit.low / fit.half, fit.high / fit.half),
         ftol=1e-3,
         xtol=1e-3,
         gtol=1e-3,
     )
-    return _Valley(2.0 * float(found.cost), found.x)
+    # Whoever solves with another rounding runs the same point.
+    x = np.clip(np.round(found.x, 6) * fit.half, fit.low, fit.high)
+    return _Valley(2.0 * float(found.cost), x)
 
 
 def _spread(fit: Fit) -> tuple[_Floats, _Floats]:
@@ -108,11 +115,6 @@ def _spread(fit: Fit) -> tuple[_Floats, _Floats]:
             points.append(x)
             features.append(seen)
     return np.array(points), np.array(features)
-
-
-def _unit(fit: Fit, x: _Floats) -> _Floats:
-    """Return points [SI] in half ranges."""
-    return np.asarray(x / fit.half)
 
 
 def _distance(fit: Fit, x: _Floats, other: _Floats) -> float:
