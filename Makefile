@@ -115,7 +115,7 @@ pages: setup $(VENV)/site-ready docs ## Build the documentation in target/site; 
 	rm -rf target/site
 	$(BIN)/sphinx-build -W --keep-going -q -j 2 -d target/site-trees docs target/site
 	cp -r target/doc target/site/rust
-	@test -f target/site/lab.html || echo "The site has no lab, and no links to it: this build has none; make lab pages"
+	@test -f target/site/live-lab.html || echo "The site has no lab, and no links to it: this build has none; make lab pages"
 
 site: browser pages ## Build the documentation, and test replays and reports in a browser
 	$(BIN)/pytest tests/site

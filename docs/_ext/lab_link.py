@@ -15,6 +15,9 @@ from sphinx.application import Sphinx
 import chaindrive as cd
 from chaindrive.lab_page import PAGE
 
+#: The lab on the site; `lab.html` is the page that tells of it.
+ADDRESS = "live-lab.html"
+
 WORDS = "Open this drive in the lab: your browser computes it, and you change it while it runs."
 
 
@@ -26,7 +29,7 @@ def paragraph(drive: cd.Drive, page: str) -> str:
 def in_lab(drive: cd.Drive) -> None:
     """Show a link to a drive, on a page one folder below the first one."""
     if PAGE.exists():
-        display(HTML(paragraph(drive, "../lab.html")))
+        display(HTML(paragraph(drive, f"../{ADDRESS}")))
 
 
 class LabLink(Directive):
@@ -39,16 +42,18 @@ class LabLink(Directive):
         if not PAGE.exists():
             return []
         drive = getattr(cd.scenes, self.arguments[0])()
-        return [nodes.raw("", paragraph(drive, "lab.html"), format="html")]
+        return [nodes.raw("", paragraph(drive, ADDRESS), format="html")]
 
 
 def bring_page(app: Sphinx, failed: Exception | None) -> None:
     """Put the lab beside the pages."""
     if failed is None and PAGE.exists():
-        shutil.copyfile(PAGE, Path(app.outdir) / "lab.html")
+        shutil.copyfile(PAGE, Path(app.outdir) / ADDRESS)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
     app.add_directive("lab-link", LabLink)
     app.connect("build-finished", bring_page)
-    return {"parallel_read_safe": True, "parallel_write_safe": True}
+    # Pages that were read with another choice are read anew.
+    version = 1 + PAGE.exists()
+    return {"env_version": version, "parallel_read_safe": True, "parallel_write_safe": True}

@@ -6,16 +6,16 @@ from pathlib import Path
 import pytest
 
 SITE = Path(__file__).parents[2] / "target" / "site"
-LINK = re.compile(r'href="([./]*lab\.html#scene=[\w-]+)"')
+LINK = re.compile(r'href="([./]*live-lab\.html#scene=[\w-]+)"')
 
 pytestmark = pytest.mark.skipif(
-    not (SITE / "lab.html").is_file(), reason=f"{SITE} has no lab: make lab pages"
+    not (SITE / "live-lab.html").is_file(), reason=f"{SITE} has no lab: make lab pages"
 )
 
 
 def test_the_first_page_opens_a_timing_drive(visit):
     page = visit(SITE / "index.html", offline=True)
-    page.click("a[href^='lab.html#scene=']")
+    page.click("a[href^='live-lab.html#scene=']")
     page.locator("#title", has_text="Timing chain").wait_for()
     assert not page.errors
 
@@ -26,3 +26,7 @@ def test_every_tutorial_has_its_drive_in_the_lab():
     links = {it.stem: LINK.findall(it.read_text(encoding="utf-8")) for it in tutorials}
     assert all(len(found) == 1 for found in links.values()), links
     assert len({*map(tuple, links.values())}) == len(tutorials)
+
+
+def test_the_page_about_the_lab_stands_beside_it():
+    assert "<h2>Speed" in (SITE / "lab.html").read_text(encoding="utf-8")
