@@ -36,7 +36,7 @@ class LiveFilm {
     this.take(frame);
   }
 
-  /** Largest share of what its chain holds that a link is pulled with, and its tension [N]; of breaking loads [N]. */
+  /** The link that is pulled hardest: its tension [N], and the share of its chain's breaking load [N]. */
   hardestPull(loads) {
     let found = { share: 0, tension: 0 };
     this.chains.forEach((chain, i) => {

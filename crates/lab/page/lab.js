@@ -188,6 +188,7 @@ class Lab {
   take({ time, frame, samples }) {
     this.time = time;
     this.film.take(frame);
+    this.warnOfBreaking();
     this.ledger.take(samples.rows);
     this.history.push(samples);
     this.dirty = true;
@@ -323,7 +324,7 @@ class Lab {
       const { about, also, note } = await this.busy('Reading', readClosed(this.core, this.base, [...this.changes, ...this.closing], path));
       this.closing = [...this.closing, ...also];
       await this.start(about, true);
-      tell(`Started anew${note ? ` ${note}` : ''}. The curves before stand in grey.`);
+      if (!this.film.isWarned) tell(`Started anew${note ? ` ${note}` : ''}. The curves before stand in grey.`);
     } catch (error) {
       if (error.ended) return;
       Object.assign(this, { changes: before, closing });
@@ -404,13 +405,13 @@ class Lab {
     }
   }
 
-  /** Tells once that a chain is pulled harder than it holds: it moves on, which no chain would. */
+  /** Tells once that a chain is pulled harder than it holds: it moves on, as no chain would. */
   warnOfBreaking() {
-    if (this.warned === this.opened) return;
+    if (this.film.isWarned) return;
     const { share, tension } = this.film.hardestPull(this.facts.chains.map((it) => it.breaking_load));
     if (share <= 1) return;
-    this.warned = this.opened;
-    tell(`A link is pulled with ${quantity(tension, 'N')} at t = ${quantity(this.time, 's')}, and the chain breaks at ${quantity(tension / share, 'N')}: what goes on here no chain lives to see.`, 'bad');
+    this.film.isWarned = true;
+    tell(`At t = ${quantity(this.time, 's')} a link is pulled with ${quantity(tension, 'N')}, and the chain breaks at ${quantity(tension / share, 'N')}. The drive moves on as if it held.`, 'bad');
   }
 
   setPace(pace) {
@@ -457,7 +458,6 @@ class Lab {
     const [slack, tight] = this.view.tension;
     // What is rounding beside the tight side is slack.
     tellTension(this.view, [quantity(Math.abs(slack) < 1e-4 * tight ? 0 : slack, 'N', 2), quantity(tight, 'N', 2)]);
-    this.warnOfBreaking();
     byId('force').hidden = !(this.view.largestForce > 0);
     tellLengths(this.view);
     tellRoller(this.view, this.view.followed);
@@ -479,7 +479,7 @@ function clockText(time, every) {
   return digits > 4 ? `t = ${(1e3 * time).toFixed(digits - 3)} ms` : `t = ${time.toFixed(digits)} s`;
 }
 
-/** A line above the picture, until the next one or until it is put away. */
+/** A line over the picture, until the next one or until it is put away. */
 function tell(text, how = '') {
   byId('message').hidden = !text;
   byId('message').className = how;

@@ -36,20 +36,22 @@ class OwnDrive {
         byId('own-type').add(new Option(`${name}${also} · ${+(1e3 * pitch).toPrecision(5)} mm`, name));
       }
     }
-    const { plan } = this;
+    this.notice = '';
     await this.takeShown();
     byId('own-type').value = this.plan.type;
     if (!this.dialog.open) this.dialog.showModal();
     this.fill();
-    if (this.plan === plan) this.plan.links = null;
     this.lay();
   }
 
-  /** Takes the drive that moves where it was laid out on such a sheet: from a file, a link, or with changes since. */
+  /** Takes the drive that moves onto the sheet, where it was laid out on one: it may come from a file or a link. */
   async takeShown() {
-    const { scene } = this.lab;
-    if (!scene || scene === this.shown) return;
-    this.shown = scene;
+    if (!this.lab.scene) return;
+    const { text, name } = await this.lab.sceneAsItStands();
+    if (text === this.shown) return;
+    this.shown = text;
+    if (text === this.plan.text()) return;
+    const scene = await this.lab.core.ask('read', { text, name });
     const plan = Plan.of(this.plan.chains, scene.resolved);
     if (!plan) return;
     // Nothing of it is lost: its text is read as the same drive. How long it runs follows from its speed.
@@ -60,6 +62,7 @@ class OwnDrive {
   /** Lays the plan anew after something has changed; rows are made anew unless one is being written in. */
   change(rows = true) {
     this.plan.links = null;
+    this.notice = '';
     if (rows) this.fill();
     this.lay();
   }
@@ -91,7 +94,8 @@ class OwnDrive {
         this.change(Boolean(text));
       } else {
         const bounds = [least === undefined ? '' : ` from ${scale * least}`, most === undefined ? '' : ` to ${scale * most}`].join('');
-        this.say(`${label} of ${it.name}: ${text ? 'a name that no other has' : `a number${bounds}`}, so it stays as it was.`, 'bad');
+        this.notice = `${label} of ${it.name}: ${text ? 'a name that no other has' : `a number${bounds}`}, so it stays as it was.`;
+        this.say(this.notice, 'bad');
       }
       input.value = shown();
     };
@@ -189,8 +193,7 @@ class OwnDrive {
         this.problem = about.unlaid;
         if (this.layout) this.fits = await this.fitsOf(plan);
       } catch (error) {
-        this.layout = null;
-        this.problem = told(error);
+        Object.assign(this, { layout: null, fits: [], problem: told(error) });
       }
     }
     this.tellLayout();
@@ -237,7 +240,8 @@ class OwnDrive {
       return;
     }
     const { pitches } = layout.counts;
-    this.say(this.isClosed ? `The loop closes with ${plan.links} links.` : `The chain's way takes ${pitches.toFixed(2)} pitches.`);
+    if (this.notice) this.say(this.notice, 'bad');
+    else this.say(this.isClosed ? `The loop closes with ${plan.links} links.` : `The chain's way takes ${pitches.toFixed(2)} pitches.`);
     if (this.isClosed) return;
     // Four are enough to choose from.
     for (const fit of this.sorted.slice(0, 4)) {
@@ -271,6 +275,7 @@ class OwnDrive {
   async run() {
     // What was written last may be on its way still.
     await this.laying;
+    if (!this.layout) return;
     if (!this.isClosed && this.best) await this.close(this.best);
     try {
       await this.open({ text: this.plan.text(), name: 'own drive' });

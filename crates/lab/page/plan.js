@@ -32,23 +32,26 @@ class Plan {
     this.load();
   }
 
-  /** The plan of a scene that was read, as far as a plan can hold it: whose text may say less than the scene. */
+  /** A plan with the chain, wheels and guides of a scene that was read; null where it is no such drive. */
   static of(chains, { chain, sprockets = [], guides = [] }) {
     const plan = new Plan(chains);
     const wheels = sprockets.map(({ name, teeth, centre: [x, y], side, motion, load }) => {
-      const wheel = { name, teeth, x, y, isChosen: true };
+      const wheel = { name, teeth, x, y };
       if (motion) return { ...wheel, role: 'drives', value: +(RPM * motion.speed).toPrecision(9) };
       const torque = Math.abs(meanTorque(list(load)));
       if (list(load).length) return { ...wheel, role: 'driven', value: +torque.toPrecision(9) };
       return { ...wheel, role: side === 'right' ? 'outside' : 'idler', value: 0 };
     });
     const isPlain = chains.some((it) => it.name === chain?.type) && wheels.length > 1
-      && wheels.filter((it) => it.role === 'drives').length === 1 && guides.every((it) => it.face.kind === 'on-span');
+      && wheels.filter((it) => it.role === 'drives').length === 1 && guides.every((it) => it.face.kind === 'on-span' && it.face.between);
     if (!isPlain) return null;
-    return Object.assign(plan, {
+    Object.assign(plan, {
       type: chain.type, links: chain.links, wheels,
       guides: guides.map(({ name, face }) => ({ name, after: face.between[0], from: 100 * face.from, to: 100 * face.to, bow: face.bow ?? 0 })),
     });
+    // A load is chosen where it is another than would be assumed.
+    for (const wheel of wheels) wheel.isChosen = wheel.role === 'driven' && wheel.value !== plan.assumedLoad(wheel);
+    return plan;
   }
 
   get chain() {
@@ -76,8 +79,13 @@ class Plan {
   /** Loads that suit the chain, where nobody has chosen one. */
   load() {
     for (const wheel of this.wheels) {
-      if (wheel.role === 'driven' && !wheel.isChosen) wheel.value = +(LOADED * this.chain.breaking_load * this.radius(wheel)).toPrecision(2);
+      if (wheel.role === 'driven' && !wheel.isChosen) wheel.value = this.assumedLoad(wheel);
     }
+  }
+
+  /** A torque that suits the chain [N m]. */
+  assumedLoad(wheel) {
+    return +(LOADED * this.chain.breaking_load * this.radius(wheel)).toPrecision(2);
   }
 
   get order() {
@@ -231,7 +239,7 @@ class Plan {
   }
 }
 
-/** Whether two scenes that were read say the same, but for the rounding of numbers. */
+/** Equality of two scenes that were read, but for the rounding of numbers. */
 function alike(one, other) {
   if (typeof one === 'number' && typeof other === 'number') return Math.abs(one - other) <= 1e-6 * Math.max(Math.abs(one), Math.abs(other), 1e-6);
   if (typeof one !== 'object' || typeof other !== 'object' || !one || !other) return one === other;

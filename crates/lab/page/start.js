@@ -159,8 +159,8 @@ async function start() {
   const open = async (asked) => {
     await lab.during(async () => {
       try {
-        await lab.open(asked);
         tell('');
+        await lab.open(asked);
       } catch (error) {
         if (!error.ended) await lab.goBack(error);
         throw error;

@@ -16,7 +16,7 @@ __all__ = ["searched"]
 
 _Floats = NDArray[np.float64]
 
-#: How often the surface is made anew, with runs at the bottoms of its valleys [–] (assumed: it has
+#: Number of times that the surface is made anew, with runs at the bottoms of its valleys [–] (assumed: it has
 #: settled by then).
 _ROUNDS = 5
 #: Valleys of the surface that are run each time, and fits that go from them, at most [–].
