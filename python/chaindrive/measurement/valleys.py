@@ -16,8 +16,8 @@ __all__ = ["searched"]
 
 _Floats = NDArray[np.float64]
 
-#: Number of times that the surface is made anew, with runs at the bottoms of its valleys [–] (assumed: it has
-#: settled by then).
+#: Number of times that the surface is made anew, with runs at the bottoms of its valleys [–]
+#: (assumed: it has settled by then).
 _ROUNDS = 5
 #: Valleys of the surface that are run each time, and fits that go from them, at most [–].
 _RUN, _FITS = 4, 2
