@@ -27,8 +27,8 @@ _LONG_STEP = 0.2
 #: Longest step along a combination that is in doubt, of any parameter [half ranges] (assumed), and
 #: the shares of it that are taken where runs fail.
 _FAR, _SHARES = 0.5, (1.0, 0.5, 0.25, 0.1)
-#: Number of times that clear combinations are taken off such a one at most, and a share of them that
-#: is little enough [–].
+#: Number of times that clear combinations are taken off such a one at most, and a share of them
+#: that is little enough [–].
 _CORRECTIONS, _RIGHT = 3, 0.01
 #: Share by which amplitudes may be off in the first of two fits [–] (assumed).
 _LOOSE = 0.5
