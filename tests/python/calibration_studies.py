@@ -29,8 +29,9 @@ LAW = "contact.teeth.law"
 
 #: Seed and rows of each table.
 TABLES = {
-    "refusal_power.csv": (20261131, 180),
-    "timing_records.csv": (20261134, 20),
+    # Anew, after it had come to be counted what folds down from above half the sampling rate.
+    "refusal_power.csv": (20261141, 180),
+    "timing_records.csv": (20261142, 20),
     # Anew, after runs along a combination had come to tell whether it is identified.
     "refusal_level.csv": (20261138, 100),
     "refusal_pairs.csv": (20261140, 100),

@@ -27,6 +27,8 @@ __all__ = [
 
 #: Multiples of the mesh whose amplitudes are features.
 _MULTIPLES = (1, 2, 3)
+#: Places between two samples of the measurement where samples of a run could stand as well [–].
+_LATE = (0.25, 0.5, 0.75)
 
 
 class Reading(NamedTuple):
@@ -89,7 +91,10 @@ def readings(
 
 
 def features_of(
-    how: Sequence[Reading], run: xr.Dataset | None, sensors: Mapping[str, Sensor] | None = None
+    how: Sequence[Reading],
+    run: xr.Dataset | None,
+    sensors: Mapping[str, Sensor] | None = None,
+    late: float = 0.0,
 ) -> list[Feature]:
     """Return the features of a run, or of the measurement itself where no run is given.
 
@@ -101,13 +106,15 @@ def features_of(
         A run, or None for the measurement.
     sensors
         Other sensors by channel, such as one whose gain was moved.
+    late
+        Share of an interval of the measurement by which samples of the run are late.
     """
     found = []
     for it in how:
         series = it.measured
         if run is not None:
             sensor = (sensors or {}).get(it.channel, it.sensor)
-            series = simulated_series(run, it.quantity, sensor, it.rate, it.shaft)
+            series = simulated_series(run, it.quantity, sensor, it.rate, it.shaft, late)
         blocks = blocks_of(series, it.length, it.is_angle, it.teeth)
         for name in ("mean", "std", "p1", "p99"):
             found.append(Feature(it.channel, name, blocks.estimate(name)))
@@ -135,7 +142,8 @@ def covariance_of(
 ) -> NDArray[np.float64]:
     """Return the covariance of features (features, features), of all errors.
 
-    Standard errors of blocks, measured and simulated, are of each feature by itself. The numerical
+    Standard errors of blocks, measured and simulated, are of each feature by itself, and so is what
+    folds down to it from above half the sampling rate, see `_folded`. The numerical
     error that the run states is a bias, see `numerical_factor`. Gain and zero of a sensor are the
     same in all features of its channel, unless they are freed: then they are parameters.
 
@@ -156,7 +164,8 @@ def covariance_of(
         for it, other in zip(found, simulated, strict=True)
     ]
     numerical = numerical_factor(how, found, run)
-    covariance: NDArray[np.float64] = np.diag(own) + numerical @ numerical.T
+    folded = _folded(how, run, values_of(simulated))
+    covariance: NDArray[np.float64] = np.diag(own + folded) + numerical @ numerical.T
     values = values_of(found)
     for name, reading in by_channel.items():
         among = np.array([it.channel == name for it in found])
@@ -168,6 +177,19 @@ def covariance_of(
             part = np.where(shifted, reading.sensor.bias_uncertainty, 0.0)
             covariance += np.outer(part, part)
     return covariance
+
+
+def _folded(
+    how: Sequence[Reading], run: xr.Dataset, simulated: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return what other places of the samples between the teeth move, squared (features,).
+
+    Lines above half the sampling rate fold down onto others (Nyquist). Where the rate is a whole
+    multiple of something in the drive they fold onto the orders themselves, with a phase that
+    hangs on the place of a sample between two teeth, of which a record says nothing.
+    """
+    others = [values_of(features_of(how, run, late=late)) - simulated for late in _LATE]
+    return np.asarray(np.mean(np.square(others), axis=0))
 
 
 #: What the numerical error is the same in: one nuisance each.

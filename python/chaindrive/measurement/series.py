@@ -94,7 +94,12 @@ def measured_series(data: xr.Dataset, name: str, shaft: str | None) -> Series:
 
 
 def simulated_series(
-    run: xr.Dataset, quantity: MeasuredQuantity, sensor: Sensor, rate: float, shaft: str | None
+    run: xr.Dataset,
+    quantity: MeasuredQuantity,
+    sensor: Sensor,
+    rate: float,
+    shaft: str | None,
+    late: float = 0.0,
 ) -> Series:
     """Return a quantity of a run as the sensor reads it, sampled as the measurement is.
 
@@ -108,6 +113,8 @@ def simulated_series(
         Samples a second of the measurement [Hz]; not more than the run has are taken.
     shaft
         The shaft whose angle is wanted.
+    late
+        Share of an interval of the measurement by which the first sample is late, in [0, 1).
     """
     time = run["time"].to_numpy()
     # The last sample stands where the run ended, up to a step after its place.
@@ -116,7 +123,8 @@ def simulated_series(
     own = (even.size - 1) / float(even[-1] - even[0])
     # Samples of a rig are taken, not averaged: what is above half their rate folds down, and a line
     # between two of them would cut the peaks of impacts.
-    among = slice(None, None, max(1, round(own / rate)))
+    denser = max(1, round(own / rate))
+    among = slice(int(late * denser), None, denser)
     sampled, readings = even[among], read[among]
     angle = None
     if shaft is not None and ("sprocket_angle" in run or "shaft_angle" in run):
