@@ -26,7 +26,7 @@ class Band(NamedTuple):
     measured: float
     """Standard error of the measured one."""
     sensor: float
-    """Standard uncertainty of the sensor."""
+    """Standard uncertainty of the sensor and of its samples."""
     freedom: float
     """Degrees of freedom of the combined standard error, after Welch and Satterthwaite."""
     half_width: float

@@ -20,8 +20,10 @@ from chaindrive.measurement.correspondence import correspondence, reference_shaf
 from chaindrive.measurement.lines import Line, mesh_lines
 from chaindrive.measurement.quantities import MeasuredQuantity
 from chaindrive.measurement.series import (
+    LATE,
     Series,
     channel_names,
+    folded,
     measured_series,
     sensor_of,
     simulated_series,
@@ -206,15 +208,27 @@ def _compared(
     # Of so many judgements at once, each at its share of what may be wrong.
     each = 1.0 - (1.0 - level) / (len(STATISTICS) + len(names) + 1)
     size = float(np.sqrt(np.mean(theirs.values**2)))
+    late = [
+        blocks_of(
+            simulated_series(run, quantity, sensor, ours.rate, shaft, it), length, is_angle, teeth
+        )
+        for it in LATE
+    ]
     for statistic in STATISTICS:
         one, other = (it.estimate(statistic) for it in cut)
-        own = sensor.uncertainty(other.value, is_mean=statistic != "std")
+        own = math.hypot(
+            sensor.uncertainty(other.value, is_mean=statistic != "std"),
+            folded([it.estimate(statistic).value for it in late], other.value),
+        )
         band = band_of(other, one, own, numerical_error(run, statistic, size), each)
         judgement = judged(other.value - one.value, band, one.value, telling)
         found.rows.append((statistic, one.value, other.value, band, judgement))
     for order, title in names.items():
         (first, one), (second, other) = (it.order(order) for it in cut)
-        own = sensor.uncertainty(other.value, is_mean=False)
+        own = math.hypot(
+            sensor.uncertainty(other.value, is_mean=False),
+            folded([it.order(order)[1].value for it in late], other.value),
+        )
         band = band_of(other, one, own, numerical_error(run, "std", size), each)
         judgement = judged(other.value - one.value, band, one.value, telling)
         found.orders.append((order, title, first, second, band, judgement))

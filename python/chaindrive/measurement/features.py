@@ -13,7 +13,7 @@ from chaindrive.measurement.bands import numerical_error
 from chaindrive.measurement.blocks import Blocks, Estimate, blocks_of, shared_length
 from chaindrive.measurement.quantities import MeasuredQuantity
 from chaindrive.measurement.sensor import Sensor
-from chaindrive.measurement.series import Series, measured_series, simulated_series
+from chaindrive.measurement.series import LATE, Series, folded, measured_series, simulated_series
 
 __all__ = [
     "Feature",
@@ -27,8 +27,6 @@ __all__ = [
 
 #: Multiples of the mesh whose amplitudes are features.
 _MULTIPLES = (1, 2, 3)
-#: Places between two samples of the measurement where samples of a run could stand as well [–].
-_LATE = (0.25, 0.5, 0.75)
 
 
 class Reading(NamedTuple):
@@ -143,7 +141,7 @@ def covariance_of(
     """Return the covariance of features (features, features), of all errors.
 
     Standard errors of blocks, measured and simulated, are of each feature by itself, and so is what
-    folds down to it from above half the sampling rate, see `_folded`. The numerical
+    folds down to it from above half the sampling rate, see `folded`. The numerical
     error that the run states is a bias, see `numerical_factor`. Gain and zero of a sensor are the
     same in all features of its channel, unless they are freed: then they are parameters.
 
@@ -164,8 +162,9 @@ def covariance_of(
         for it, other in zip(found, simulated, strict=True)
     ]
     numerical = numerical_factor(how, found, run)
-    folded = _folded(how, run, values_of(simulated))
-    covariance: NDArray[np.float64] = np.diag(own + folded) + numerical @ numerical.T
+    late = [values_of(features_of(how, run, late=it)) for it in LATE]
+    places = folded(late, values_of(simulated)) ** 2
+    covariance: NDArray[np.float64] = np.diag(own + places) + numerical @ numerical.T
     values = values_of(found)
     for name, reading in by_channel.items():
         among = np.array([it.channel == name for it in found])
@@ -177,19 +176,6 @@ def covariance_of(
             part = np.where(shifted, reading.sensor.bias_uncertainty, 0.0)
             covariance += np.outer(part, part)
     return covariance
-
-
-def _folded(
-    how: Sequence[Reading], run: xr.Dataset, simulated: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Return what other places of the samples between the teeth move, squared (features,).
-
-    Lines above half the sampling rate fold down onto others (Nyquist). Where the rate is a whole
-    multiple of something in the drive they fold onto the orders themselves, with a phase that
-    hangs on the place of a sample between two teeth, of which a record says nothing.
-    """
-    others = [values_of(features_of(how, run, late=late)) - simulated for late in _LATE]
-    return np.asarray(np.mean(np.square(others), axis=0))
 
 
 #: What the numerical error is the same in: one nuisance each.

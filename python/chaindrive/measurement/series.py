@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -17,9 +19,20 @@ from chaindrive.measurement.record import FORMAT
 from chaindrive.measurement.sensor import Sensor
 from chaindrive.measurement.time_base import longest_even
 
-__all__ = ["Series", "channel_names", "measured_series", "sensor_of", "simulated_series"]
+__all__ = [
+    "LATE",
+    "Series",
+    "channel_names",
+    "folded",
+    "measured_series",
+    "sensor_of",
+    "simulated_series",
+]
 
 _Floats = NDArray[np.float64]
+
+#: Places between two samples of the measurement where samples of a run could stand as well [–].
+LATE = (0.25, 0.5, 0.75)
 
 
 @dataclass(frozen=True)
@@ -130,6 +143,24 @@ def simulated_series(
     if shaft is not None and ("sprocket_angle" in run or "shaft_angle" in run):
         angle = _rising(np.interp(sampled, time, turning(run, shaft)[0]), shaft)
     return Series(sampled, readings, angle)
+
+
+def folded(values: Sequence[Any], value: Any) -> _Floats:
+    """Return the error of numbers of a run by lines that fold down, the shape of `value`.
+
+    Lines above half the sampling rate fold down onto others (Nyquist). Where the rate is a whole
+    multiple of something in the drive they fold onto its orders, with a phase that hangs on the
+    place of a sample between two teeth, of which a record says nothing.
+
+    Parameters
+    ----------
+    values
+        The numbers where samples are late, at each of `LATE`.
+    value
+        The numbers where they are not.
+    """
+    moved = np.asarray(values, dtype=np.float64) - np.asarray(value, dtype=np.float64)
+    return np.asarray(np.sqrt(np.mean(np.square(moved), axis=0)))
 
 
 def _rising(angle: _Floats, shaft: str) -> _Floats:
