@@ -29,7 +29,7 @@ _LONG_STEP = 0.2
 _FAR, _SHARES = 0.5, (1.0, 0.5, 0.25, 0.1)
 #: Number of times that clear combinations are taken off such a one at most, and a share of them
 #: that is little enough [–].
-_CORRECTIONS, _RIGHT = 3, 0.01
+_CORRECTIONS, _RIGHT = 8, 1e-4
 #: Share by which amplitudes may be off in the first of two fits [–] (assumed).
 _LOOSE = 0.5
 #: Shortest step (assumed): the numbers of a run are rough below.
@@ -205,24 +205,54 @@ class Fit:
         """
         size = np.linalg.norm(jacobian, axis=0)
         slopes = jacobian @ found.directions
+        clear = found.is_clear
         for n in np.flatnonzero(found.is_in_doubt)[::-1]:
-            clear = found.is_clear
-            direction = found.directions[:, n]
-            for _ in range(_CORRECTIONS):
-                moved = self._moved(direction, 2).mean(axis=0)
-                held, *_ = np.linalg.lstsq(slopes[:, clear], moved)
-                direction = direction - found.directions[:, clear] @ held
-                direction = direction / np.linalg.norm(direction * size)
-                if np.linalg.norm(held) < _RIGHT:
-                    break
+            direction, local = self._purged(
+                found.directions[:, n], found.directions[:, clear], slopes[:, clear]
+            )
+            direction = direction / np.linalg.norm(direction * size)
             rows = self._moved(direction, self._designs)
             slopes[:, n] = rows.mean(axis=0)
             # λ = |P r|², P without the slopes of clear combinations, r the mean of the designs.
-            basis, _ = np.linalg.qr(slopes[:, clear])
+            basis, _ = np.linalg.qr(local)
             rows = rows - (rows @ basis) @ basis.T
             moved, noise = rows.mean(axis=0), rows.var(axis=0, ddof=1) / len(rows)
             found = found.seen_along(n, direction, float(moved @ moved), float(noise.sum()))
+            clear[n] = not found.is_lost[n]
         return found
+
+    def _purged(
+        self, direction: _Floats, clear: _Floats, slopes: _Floats
+    ) -> tuple[_Floats, _Floats]:
+        """Return a direction that moves least without clear ones, and what these move beside it.
+
+        Slopes of clear directions bend over a long step: what each correction has taken off sets
+        them right for the next (Broyden).
+
+        Parameters
+        ----------
+        direction
+            The direction (p,) [half ranges].
+        clear, slopes
+            Clear directions (p, clear) [half ranges], and their slopes (residuals, clear).
+        """
+        moved = self._moved(direction, 2).mean(axis=0)
+        best = (float(np.linalg.norm(moved)), direction, slopes)
+        stalls = 0
+        for _ in range(_CORRECTIONS):
+            held, *_ = np.linalg.lstsq(slopes, moved)
+            if np.linalg.norm(held) < _RIGHT or stalls > 1:
+                break
+            direction = direction - clear @ held
+            left = self._moved(direction, 2).mean(axis=0)
+            # S ← S + (Δ − S h) hᵀ / |h|², Δ what the correction h has taken off.
+            slopes = slopes + np.outer(moved - left - slopes @ held, held) / (held @ held)
+            moved = left
+            size = float(np.linalg.norm(moved))
+            stalls = stalls + 1 if size > 0.9 * best[0] else 0
+            if size < best[0]:
+                best = (size, direction, slopes)
+        return best[1:]
 
     def _moved(self, direction: _Floats, designs: int) -> _Floats:
         """Return slopes along a direction, over as long a step as runs, (designs, residuals)."""

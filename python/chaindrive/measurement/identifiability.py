@@ -64,12 +64,20 @@ class Identifiability:
         own = [self.parameters[n] for n in loud]
         effect = np.sqrt(np.diag(self.information))[loud]
         found = []
-        rows = zip(self.eigenvalues, self.floor, self.directions.T, strict=True)
-        for value, floor, direction in rows:
-            least = max(LEAST_EIGENVALUE, _FLOORS * floor)
-            if np.isfinite(value) and value < least:
-                found.append((float(value), float(least), _named(own, direction[loud], effect)))
+        for n in np.flatnonzero(self.is_lost):
+            words = _named(own, self.directions[loud, n], effect)
+            found.append((float(self.eigenvalues[n]), float(self._needed[n]), words))
         return found
+
+    @property
+    def _needed(self) -> _Floats:
+        """Eigenvalues from which a combination is identified (p,)."""
+        return np.asarray(np.maximum(LEAST_EIGENVALUE, _FLOORS * self.floor))
+
+    @property
+    def is_lost(self) -> NDArray[np.bool_]:
+        """Directions that are not identified (p,)."""
+        return np.asarray(self.eigenvalues < self._needed)
 
     @property
     def is_in_doubt(self) -> NDArray[np.bool_]:
