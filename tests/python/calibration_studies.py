@@ -34,7 +34,7 @@ TABLES = {
     "timing_records.csv": (20261142, 20),
     # Anew, after runs along a combination had come to tell whether it is identified.
     "refusal_level.csv": (20261138, 100),
-    "refusal_pairs.csv": (20261143, 100),
+    "refusal_pairs.csv": (20261144, 100),
     # Anew, after intervals had become those of profiles.
     "forty_again.csv": (20261135, 40),
 }

@@ -29,7 +29,7 @@ _LONG_STEP = 0.2
 _FAR, _SHARES = 0.5, (1.0, 0.5, 0.25, 0.1)
 #: Number of times that clear combinations are taken off such a one at most, and a share of them
 #: that is little enough [–].
-_CORRECTIONS, _RIGHT = 8, 1e-4
+_CORRECTIONS, _RIGHT = 12, 3e-4
 #: Share by which amplitudes may be off in the first of two fits [–] (assumed).
 _LOOSE = 0.5
 #: Shortest step (assumed): the numbers of a run are rough below.
@@ -238,10 +238,9 @@ class Fit:
         """
         moved = self._moved(direction, 2).mean(axis=0)
         best = (float(np.linalg.norm(moved)), direction, slopes)
-        stalls = 0
         for _ in range(_CORRECTIONS):
             held, *_ = np.linalg.lstsq(slopes, moved)
-            if np.linalg.norm(held) < _RIGHT or stalls > 1:
+            if min(float(np.linalg.norm(held)), best[0]) < _RIGHT:
                 break
             direction = direction - clear @ held
             left = self._moved(direction, 2).mean(axis=0)
@@ -249,7 +248,6 @@ class Fit:
             slopes = slopes + np.outer(moved - left - slopes @ held, held) / (held @ held)
             moved = left
             size = float(np.linalg.norm(moved))
-            stalls = stalls + 1 if size > 0.9 * best[0] else 0
             if size < best[0]:
                 best = (size, direction, slopes)
         return best[1:]
