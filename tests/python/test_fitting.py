@@ -62,6 +62,26 @@ def test_an_exact_pair_is_named_beside_one_that_is_nearly_none(noise: float) -> 
     assert "p2" in words
 
 
+def test_an_exact_pair_is_named_where_the_record_bends() -> None:
+    """Over a long step a + 0.3 c moves the record otherwise than over a short one."""
+    rng = np.random.default_rng(57)
+    slope, cube = 40.0 * rng.standard_normal(12), 100.0 * rng.standard_normal(12)
+    seen: dict[bytes, Floats] = {}
+
+    def function(x: Floats, design: int) -> Floats:
+        total = x[0] + 0.3 * x[1]
+        # Rough over a hundredth of the range: close to each other runs are alike.
+        key = (np.round(total, 2) + 0.0).tobytes() + bytes([design])
+        rough = seen.setdefault(key, 4.0 * rng.standard_normal(12))
+        return np.asarray(slope * total + cube * total**3 + rough)
+
+    found = Known(function, np.zeros(12), [0.0, 0.0]).begin()
+    [(value, _, words)] = found.combinations
+    assert value < 1e-4
+    assert "p0" in words
+    assert "p1" in words
+
+
 def two_valleys(x: Floats, design: int) -> Floats | None:
     """Two valleys at a = ±0.5, of which the one at −0.5 is deeper; beyond 0.9 nothing runs."""
     a, b = x
