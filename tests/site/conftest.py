@@ -3,6 +3,7 @@
 import shutil
 
 import pytest
+from lab_page import PAGE, WIDE, until
 from playwright.sync_api import sync_playwright
 
 
@@ -47,3 +48,28 @@ def inked():
         "return n; }"
     )
     return lambda page: page.evaluate(program)
+
+
+@pytest.fixture
+def opened(visit):
+    """Opens the lab, with a part of an address; every error in it fails the test."""
+    pages = []
+
+    def open_it(fragment="", **how):
+        page = visit(PAGE, offline=True, **{"viewport": WIDE, **how})
+        if fragment:
+            page.goto(f"{PAGE.as_uri()}{fragment}")
+            page.reload()
+        until(page, "Boolean(window.lab)")
+        pages.append(page)
+        return page
+
+    yield open_it
+    for page in pages:
+        assert page.errors == []
+        page.close()
+
+
+@pytest.fixture
+def page(opened):
+    return opened()
