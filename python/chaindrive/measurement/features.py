@@ -137,6 +137,8 @@ def covariance_of(
     found: Sequence[Feature],
     run: xr.Dataset,
     freed: Collection[tuple[str, str]] = (),
+    *,
+    is_filtered: bool = False,
 ) -> NDArray[np.float64]:
     """Return the covariance of features (features, features), of all errors.
 
@@ -154,6 +156,8 @@ def covariance_of(
         states none.
     freed
         Nuisances that are free, as pairs of channel and field.
+    is_filtered
+        Whether nothing folds down, as of a rig that is only planned and has a low-pass.
     """
     by_channel = {it.channel: it for it in how}
     simulated = features_of(how, run)
@@ -162,8 +166,8 @@ def covariance_of(
         for it, other in zip(found, simulated, strict=True)
     ]
     numerical = numerical_factor(how, found, run)
-    late = [values_of(features_of(how, run, late=it)) for it in LATE]
-    places = folded(late, values_of(simulated)) ** 2
+    late = [] if is_filtered else [values_of(features_of(how, run, late=it)) for it in LATE]
+    places = 0.0 if is_filtered else folded(late, values_of(simulated)) ** 2
     covariance: NDArray[np.float64] = np.diag(own + places) + numerical @ numerical.T
     values = values_of(found)
     for name, reading in by_channel.items():

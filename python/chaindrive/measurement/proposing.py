@@ -83,8 +83,9 @@ def next_measurement(
     Of each candidate the Fisher information ``F = Jᵀ C⁻¹ J`` of its statistics and orders is added
     to what is known, ``P' = (P⁻¹ + F)⁻¹``: errors of parameters, or of a prediction by them, shrink
     from P to P'. J and C are those of `check_data`, of a record that is a run of the drive itself;
-    what two designs of J differ by counts as an error of the feature. It tells what to expect where
-    the drive is about right, and measures nothing.
+    what two designs of J differ by counts as an error of the feature. A low-pass below half the
+    sampling rate is taken for granted. It tells what to expect where the drive is about right, and
+    measures nothing.
 
     Parameters
     ----------
@@ -297,7 +298,7 @@ def _seen(
 ) -> _Seen:
     found = features_of(reads, run)
     among = np.array([it.channel == name for it in found])
-    covariance = covariance_of(reads, found, run)[np.ix_(among, among)]
+    covariance = covariance_of(reads, found, run, is_filtered=True)[np.ix_(among, among)]
     # The record and the run that stands beside it.
     scatter = np.array([2.0 * it.estimate.error**2 for it in found])[among]
     # What is not known of a slope, times what is not known of its parameter.
