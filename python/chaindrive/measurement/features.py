@@ -161,14 +161,13 @@ def covariance_of(
     """
     by_channel = {it.channel: it for it in how}
     simulated = features_of(how, run)
-    own = [
-        it.estimate.error**2 + other.estimate.error**2
-        for it, other in zip(found, simulated, strict=True)
-    ]
+    pairs = zip(found, simulated, strict=True)
+    own = np.array([it.estimate.error**2 + other.estimate.error**2 for it, other in pairs])
     numerical = numerical_factor(how, found, run)
-    late = [] if is_filtered else [values_of(features_of(how, run, late=it)) for it in LATE]
-    places = 0.0 if is_filtered else folded(late, values_of(simulated)) ** 2
-    covariance: NDArray[np.float64] = np.diag(own + places) + numerical @ numerical.T
+    if not is_filtered:
+        late = [values_of(features_of(how, run, late=it)) for it in LATE]
+        own += folded(late, values_of(simulated)) ** 2
+    covariance: NDArray[np.float64] = np.diag(own) + numerical @ numerical.T
     values = values_of(found)
     for name, reading in by_channel.items():
         among = np.array([it.channel == name for it in found])
