@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from chaindrive.errors import MeasurementError, SimulationError
 from chaindrive.extras import extra
+from chaindrive.measurement.combinations import told_by_runs
 from chaindrive.measurement.experiment import Errors, Experiment
 from chaindrive.measurement.free import FreeParameter
 from chaindrive.measurement.identifiability import Identifiability, identifiability
@@ -27,9 +28,6 @@ _LONG_STEP = 0.2
 #: Longest step along a combination that is in doubt, of any parameter [half ranges] (assumed), and
 #: the shares of it that are taken where runs fail.
 _FAR, _SHARES = 0.5, (1.0, 0.5, 0.25, 0.1)
-#: Number of times that clear combinations are taken off such a one at most, and a share of them
-#: that is little enough [–].
-_CORRECTIONS, _RIGHT = 12, 3e-4
 #: Share by which amplitudes may be off in the first of two fits [–] (assumed).
 _LOOSE = 0.5
 #: Shortest step (assumed): the numbers of a run are rough below.
@@ -181,76 +179,13 @@ class Fit:
                 self.steps = short
         found = self._identifiability(jacobian, noise)
         if self._designs > 2:
-            found = self._seen_along(found, self._whole(jacobian))
+            found = told_by_runs(found, self._whole(jacobian), self._moved, self._designs)
         self._refine(jacobian)
         return found
 
     @property
     def _designs(self) -> int:
         return max(len(it.designs) for it in self.experiments)
-
-    def _seen_along(self, found: Identifiability, jacobian: _Floats) -> Identifiability:
-        """Return the same, with combinations that are in doubt told by runs along them.
-
-        The ends of such a combination are run, so that two parameters of which the drive knows only
-        the sum or the product make the same run twice. The clearest comes first: where another one
-        moves the record as it does, it holds some of it, which is taken off.
-
-        Parameters
-        ----------
-        found
-            By derivatives of two designs.
-        jacobian
-            These, of whitened residuals by half ranges (residuals, p).
-        """
-        size = np.linalg.norm(jacobian, axis=0)
-        slopes = jacobian @ found.directions
-        clear = found.is_clear
-        for n in np.flatnonzero(found.is_in_doubt)[::-1]:
-            direction, local = self._purged(
-                found.directions[:, n], found.directions[:, clear], slopes[:, clear]
-            )
-            direction = direction / np.linalg.norm(direction * size)
-            rows = self._moved(direction, self._designs)
-            slopes[:, n] = rows.mean(axis=0)
-            # λ = |P r|², P without the slopes of clear combinations, r the mean of the designs.
-            basis, _ = np.linalg.qr(local)
-            rows = rows - (rows @ basis) @ basis.T
-            moved, noise = rows.mean(axis=0), rows.var(axis=0, ddof=1) / len(rows)
-            found = found.seen_along(n, direction, float(moved @ moved), float(noise.sum()))
-            clear[n] = not found.is_lost[n]
-        return found
-
-    def _purged(
-        self, direction: _Floats, clear: _Floats, slopes: _Floats
-    ) -> tuple[_Floats, _Floats]:
-        """Return a direction that moves least without clear ones, and what these move beside it.
-
-        Slopes of clear directions bend over a long step: what each correction has taken off sets
-        them right for the next (Broyden).
-
-        Parameters
-        ----------
-        direction
-            The direction (p,) [half ranges].
-        clear, slopes
-            Clear directions (p, clear) [half ranges], and their slopes (residuals, clear).
-        """
-        moved = self._moved(direction, 2).mean(axis=0)
-        best = (float(np.linalg.norm(moved)), direction, slopes)
-        for _ in range(_CORRECTIONS):
-            held, *_ = np.linalg.lstsq(slopes, moved)
-            if min(float(np.linalg.norm(held)), best[0]) < _RIGHT:
-                break
-            direction = direction - clear @ held
-            left = self._moved(direction, 2).mean(axis=0)
-            # S ← S + (Δ − S h) hᵀ / |h|², Δ what the correction h has taken off.
-            slopes = slopes + np.outer(moved - left - slopes @ held, held) / (held @ held)
-            moved = left
-            size = float(np.linalg.norm(moved))
-            if size < best[0]:
-                best = (size, direction, slopes)
-        return best[1:]
 
     def _moved(self, direction: _Floats, designs: int) -> _Floats:
         """Return slopes along a direction, over as long a step as runs, (designs, residuals)."""
