@@ -27,33 +27,39 @@ pub(super) fn tree(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("Cargo writes UTF-8")
 }
 
+/// Every package of a selection with its features, by dependencies of some kinds; without the example of laws.
+fn features(selected: &str, edges: &str) -> BTreeSet<String> {
+    let how = ["--edges", edges, "--format", "{p} {f}"].into_iter();
+    let told = tree(&how.chain(selected.split(' ')).collect::<Vec<_>>());
+    let lines = told.lines().map(|line| line.trim_end_matches(" (*)"));
+    let found: BTreeSet<String> = lines
+        .filter(|line| !line.starts_with("own-laws "))
+        .map(str::to_owned)
+        .collect();
+    assert!(found.len() > 100, "{found:?}");
+    found
+}
+
 /// The example of laws asks nothing of a library that the others do not: otherwise the tests would compile it twice.
 #[test]
 fn the_example_of_laws_adds_no_feature() {
-    let features = |more: &[&str]| -> BTreeSet<String> {
-        let told = tree(
-            &[
-                &[
-                    "--workspace",
-                    "--edges",
-                    "normal,build,dev",
-                    "--format",
-                    "{p} {f}",
-                ],
-                more,
-            ]
-            .concat(),
-        );
-        let lines = told.lines().map(|line| line.trim_end_matches(" (*)"));
-        lines
-            .filter(|line| !line.starts_with("own-laws "))
-            .map(str::to_owned)
-            .collect()
-    };
-    let [with, without] = [features(&[]), features(&["--exclude", "own-laws"])];
-    assert!(with.len() > 100, "{with:?}");
+    let edges = "normal,build,dev";
+    let with = features("--workspace", edges);
+    let without = features("--workspace --exclude own-laws", edges);
     let more: Vec<_> = with.symmetric_difference(&without).collect();
     assert!(more.is_empty(), "{more:?}");
+}
+
+/// What `make setup` has compiled the tests do not compile again: each crate has the same features here and there, also by name.
+#[test]
+fn tests_compile_nothing_again_that_is_installed() {
+    let installed = features(
+        "--package chaindrive-python --package chaindrive-fmu",
+        "normal",
+    );
+    let here = features("--workspace", "normal,dev");
+    let again: Vec<_> = installed.difference(&here).collect();
+    assert!(again.is_empty(), "{again:?}");
 }
 
 /// A library that comes to the forces is either a part of the identity, or said to compute nothing.
