@@ -80,5 +80,6 @@ def test_a_thousand_intervals_hold_as_often_as_they_say() -> None:
     the right models are refused for missing physics, at most 21 (three and a half of them, too).
     """
     hits, refused, _ = hits_of(1000)
+    print(hits, refused)
     assert all(925 <= it <= 973 for it in hits.values()), hits
     assert refused <= 21
