@@ -35,8 +35,8 @@ TABLES = {
     # Anew, after runs along a combination had come to tell whether it is identified.
     "refusal_level.csv": (20261138, 100),
     "refusal_pairs.csv": (20261144, 100),
-    # Anew, after intervals had become those of profiles.
-    "forty_again.csv": (20261135, 40),
+    # Anew, after valleys had come to be searched until no run is deeper than the optima.
+    "forty_again.csv": (20261145, 40),
 }
 CHANNELS = ("tight", "slack", "torque")
 

@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from chaindrive.measurement.experiment import Errors
-from chaindrive.measurement.fitting import Fit
+from chaindrive.measurement.fitting import Fit, Optimum
 from chaindrive.measurement.free import FreeParameter
 from chaindrive.measurement.valleys import searched
 
@@ -108,3 +108,14 @@ def test_one_valley_stays_alone() -> None:
     found = searched(fit, [fit.optimum(fit.start)])
     assert len(found) == 1
     assert found[0].x == pytest.approx([0.3, -0.2], abs=1e-3)
+
+
+def test_a_fit_that_ended_too_early_hides_no_valley() -> None:
+    """On a rough χ² a fit may end on a step, beside the valley: a run there is deeper."""
+    slopes = 10.0 * np.random.default_rng(3).standard_normal((6, 2))
+    fit = Known(lambda x, _: slopes @ x, slopes @ np.array([0.3, -0.2]), [0.0, 0.0])
+    fit.starts(5)
+    beside = np.array([0.2, -0.1])
+    early = Optimum(beside, 0.5 * float(np.sum(fit.residuals(beside) ** 2)), slopes)
+    best = searched(fit, [early])[0]
+    assert best.x == pytest.approx([0.3, -0.2], abs=1e-3)

@@ -21,6 +21,11 @@ _Floats = NDArray[np.float64]
 _ROUNDS = 5
 #: Valleys of the surface that are run each time, and fits that go from them, at most [–].
 _RUN, _FITS = 4, 2
+#: Searches at most, each with fits that the one before had not [–] (assumed).
+_PASSES = 3
+#: How much less the χ² of a run is than that of an optimum beside it where that fit has ended too
+#: early, on a step of a rough χ² [–] (assumed): the square of one error.
+_DEEPER = 1.0
 #: Distance of runs that are taken into the surface [half ranges]: nearer ones differ by noise.
 _GRAIN = 0.04
 #: Distance of two valleys [half ranges].
@@ -53,23 +58,36 @@ def searched(fit: Fit, optima: Sequence[Optimum]) -> list[Optimum]:
     where a costly function is least.
     """
     found = list(optima)
-    bottoms: list[_Floats] = []
-    for _ in range(_ROUNDS):
-        bottoms = [it.x for it in _valleys(fit)]
-        fit.features(bottoms)
+    for _ in range(_PASSES):
+        bottoms: list[_Floats] = []
+        for _ in range(_ROUNDS):
+            bottoms = [it.x for it in _valleys(fit)]
+            fit.features(bottoms)
+        more = _fitted(fit, found, bottoms)
+        if not more:
+            break
+        # Runs of these fits have changed the surface.
+        found = apart([*found, *more], fit.half)
+    return found
+
+
+def _fitted(fit: Fit, found: Sequence[Optimum], bottoms: Sequence[_Floats]) -> list[Optimum]:
+    """Return where fits end from bottoms that are deep, without an optimum that is as deep."""
     deepest = _WORTH * max(2.0 * found[0].cost, float(fit.known.sum()))
-    fits = 0
+    more: list[Optimum] = []
     for x, residual in zip(bottoms, fit.residuals_at(bottoms), strict=True):
-        is_new = all(_distance(fit, x, one.x) > _APART for one in found)
-        is_deep = residual is not None and float(residual @ residual) < deepest
-        if is_new and is_deep and fits < _FITS:
-            fits += 1
+        chi2 = np.inf if residual is None else float(residual @ residual)
+        is_new = all(
+            _distance(fit, x, it.x) > _APART or chi2 < 2.0 * it.cost - _DEEPER
+            for it in [*found, *more]
+        )
+        if is_new and chi2 < deepest and len(more) < _FITS:
             try:
-                found.append(fit.optimum(x, is_near=True))
+                more.append(fit.optimum(x, is_near=True))
             except SimulationError:
                 # A way that leads where nothing runs leads to no optimum.
                 continue
-    return apart(found, fit.half)
+    return more
 
 
 def _valleys(fit: Fit) -> list[_Valley]:
