@@ -1,8 +1,7 @@
 """Holds `make run` and `make test` against their budgets in CONTRIBUTING.md, in processor time.
 
-They run one after the other in a fresh clone of the last commit, as on a new machine: the tests
-find installed what was run. A budget is that of the reference; this machine is measured beside it,
-see pace.py.
+One follows the other in a fresh clone of the last commit, so that the tests find the package
+installed. A budget is that of the reference; this machine is measured beside it, see pace.py.
 """
 
 import os

@@ -44,17 +44,30 @@ def test_the_right_model_is_refused_seldom() -> None:
     assert len(refused) <= 5, refused
 
 
+#: Strengths that leave five errors in the mean, with fewer than all refused: at the loads of two
+#: records a spring explains the softest teeth, to 2.3 errors.
+FEWER = {("law", "secant 0.15"): 18}
+
+
 @pytest.mark.slow
 def test_missing_physics_is_refused_where_it_leaves_five_errors() -> None:
-    """A fit that leaves a feature of its record five errors off is refused, whatever it lacks."""
+    """A feature that is left five errors off in one record, or in the mean of a strength."""
     found = [power_of(it) for it in draws_of("refusal_power.csv")]
     for case in CASES:
         own = [it for it in found if (it["kind"], it["strength"]) == case]
-        print(*case, Counter(it["why"] for it in own))
-    beyond = [it for it in found if max(map(abs, it["residual"].values())) >= 5.0]
-    assert beyond
-    for it in beyond:
-        assert "missing" in it["why"] or "bound" in it["why"], it
+        refused = sum("missing" in it["why"] or "bound" in it["why"] for it in own)
+        features = own[0]["residual"]
+        left = max(abs(sum(it["residual"][name] for it in own)) / len(own) for name in features)
+        print(
+            *case,
+            f"{refused} of {len(own)}, {left:.1f} errors left",
+            Counter(it["why"] for it in own),
+        )
+        if left >= 5.0:
+            assert refused >= FEWER.get(case, len(own)), case
+    for it in found:
+        if max(map(abs, it["residual"].values())) >= 5.0:
+            assert "missing" in it["why"] or "bound" in it["why"], it
 
 
 @pytest.mark.slow

@@ -21,10 +21,10 @@ _Floats = NDArray[np.float64]
 _ROUNDS = 5
 #: Valleys of the surface that are run each time, and fits that go from them, at most [–].
 _RUN, _FITS = 4, 2
-#: Searches at most, each with fits that the one before had not [–] (assumed).
+#: Searches at most [–] (assumed): each is on a surface with the runs of the last one's fits.
 _PASSES = 3
-#: How much less the χ² of a run is than that of an optimum beside it where that fit has ended too
-#: early, on a step of a rough χ² [–] (assumed): the square of one error.
+#: Excess of the χ² of an optimum over that of a run beside it from which the optimum does not match
+#: [–] (assumed, the square of one error): on a rough χ² fits end too early.
 _DEEPER = 1.0
 #: Distance of runs that are taken into the surface [half ranges]: nearer ones differ by noise.
 _GRAIN = 0.04
@@ -50,7 +50,7 @@ def searched(fit: Fit, optima: Sequence[Optimum]) -> list[Optimum]:
 
     A few starts miss valleys of a parameter that moves little. Thin plate splines interpolate the
     features of all runs so far, and their χ² costs next to nothing. Runs at the bottoms of its
-    valleys set it right; fits go from bottoms that are deep and have no optimum.
+    valleys set it right; fits go from deep bottoms that no optimum beside them matches.
 
     References
     ----------
@@ -72,7 +72,7 @@ def searched(fit: Fit, optima: Sequence[Optimum]) -> list[Optimum]:
 
 
 def _fitted(fit: Fit, found: Sequence[Optimum], bottoms: Sequence[_Floats]) -> list[Optimum]:
-    """Return where fits end from bottoms that are deep, without an optimum that is as deep."""
+    """Return the optima of fits from deep bottoms that no optimum beside them matches."""
     deepest = _WORTH * max(2.0 * found[0].cost, float(fit.known.sum()))
     more: list[Optimum] = []
     for x, residual in zip(bottoms, fit.residuals_at(bottoms), strict=True):

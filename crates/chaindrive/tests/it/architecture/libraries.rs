@@ -27,7 +27,7 @@ pub(super) fn tree(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("Cargo writes UTF-8")
 }
 
-/// Every package of a selection with its features, by dependencies of some kinds; without the example of laws.
+/// Packages of a selection and their features, along the given kinds of dependencies, without the example of laws.
 fn features(selected: &str, edges: &str) -> BTreeSet<String> {
     let how = ["--edges", edges, "--format", "{p} {f}"].into_iter();
     let told = tree(&how.chain(selected.split(' ')).collect::<Vec<_>>());
@@ -50,7 +50,7 @@ fn the_example_of_laws_adds_no_feature() {
     assert!(more.is_empty(), "{more:?}");
 }
 
-/// What `make setup` has compiled the tests do not compile again: each crate has the same features here and there, also by name.
+/// The tests reuse every crate of the installed package: both builds have the same features, down to the name `default`.
 #[test]
 fn tests_compile_nothing_again_that_is_installed() {
     let installed = features(
