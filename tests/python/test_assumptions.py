@@ -189,6 +189,28 @@ def test_distributions_are_those_of_the_text(law: object, ends: tuple[float, flo
     np.testing.assert_allclose(found.ppf(at), ends, rtol=1e-4)
 
 
+def test_a_deviation_of_temperatures_knows_no_zero() -> None:
+    found = distribution_of("normal(40 degC, 5 degC)", "lubricant.temperature")
+    assert found.mean() == pytest.approx(313.15)
+    assert found.std() == pytest.approx(5.0)
+
+
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [
+        ("normal(20 kN, 1 mm)", "is in N and in m"),
+        ("normal(20 kN, 1 kN)", "is a force, needed is a stiffness"),
+        (("20 kN", 3e4), "is a force, needed is a stiffness"),
+        ("lognormal(20 MN/m, 1.5 N)", "no distribution"),
+    ],
+)
+def test_a_distribution_is_of_the_unit_of_its_value(law: object, words: str) -> None:
+    with pytest.raises(cd.ParameterError, match=words):
+        distribution_of(law, "chain.stiffness", drive())
+    same = distribution_of("normal(20 MN/m, 1 kN/mm)", "chain.stiffness", drive())
+    assert (same.mean(), same.std()) == pytest.approx((20e6, 1e6))
+
+
 @pytest.mark.parametrize(
     ("laws", "words"),
     [

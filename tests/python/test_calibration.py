@@ -235,7 +235,7 @@ def test_a_fit_is_refused_with_a_reason(
 def test_what_is_not_an_argument_is_told(data: xr.Dataset) -> None:
     for arguments, words in (
         ({"loss": "least"}, "must be one of linear"),
-        ({"validation": 1.0}, r"must be in \[0, 0.9\)"),
+        ({"validation": 1.0}, r"must be a number in \[0, 0.9\)"),
         ({"starts": 0}, "at least 1"),
         ({"priors": {"chain.mass": (1.0, 0.1)}}, "it is not free"),
         ({"profiles": ["chain.mass"]}, "is not free"),

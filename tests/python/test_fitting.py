@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from chaindrive.measurement.experiment import Errors
 from chaindrive.measurement.fitting import Fit, Optimum
 from chaindrive.measurement.free import FreeParameter
+from chaindrive.measurement.likelihood import Sides, reach_of
+from chaindrive.measurement.validating import validated
 from chaindrive.measurement.valleys import searched
 
 Floats = NDArray[np.float64]
@@ -30,13 +32,39 @@ class Known(Fit):
             np.full(count, np.inf),
         )
         phases = [{"route.phase": 0.1 * n} for n in range(8)]
-        experiment = SimpleNamespace(run=None, errors=lambda run: errors, designs=phases)
+        # The part that is kept has a feature more, which is the first one again.
+        more = Errors(
+            [*errors.names, "feature 0 again"],
+            np.append(values, values[0]),
+            np.eye(count + 1),
+            np.zeros((count + 1, 1)),
+            np.ones(count + 1),
+            np.full(count + 1, np.inf),
+        )
+        experiment = SimpleNamespace(
+            run=None,
+            errors=lambda run, kept=False: more if kept else errors,
+            designs=phases,
+            kept=True,
+        )
         parameters = [FreeParameter(f"p{n}", -1.0, 1.0, at) for n, at in enumerate(start)]
         super().__init__([experiment], parameters, {}, "linear", lambda: None)
         self.function = function
 
-    def _computed(self, points: Sequence[Floats], design: int) -> list[Floats | None]:
-        return [self.function(x, design) for x in points]
+    def _computed(self, points: Sequence[Floats], design: int, kept: bool) -> list[Floats | None]:
+        found = [self.function(x, design) for x in points]
+        return [it if it is None or not kept else np.append(it, it[0]) for it in found]
+
+
+def test_what_was_kept_is_foretold_with_the_errors_of_the_parameters() -> None:
+    """``σ² = 1 + (s σ_θ)²``, of each feature with its own slope s, also where there are others."""
+    slopes = np.array([3.0, 4.0])
+    fit = Known(lambda x, _: slopes * x[0], 0.1 * slopes, [0.0])
+    best = fit.optimum(fit.start)
+    found = validated(fit, best, fit.worth(best), 0.01)
+    assert found is not None
+    wanted = np.sqrt(1.0 + (np.array([3.0, 4.0, 3.0]) / 5.0) ** 2)
+    np.testing.assert_allclose(found.error, wanted, rtol=1e-6)
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.1, 0.5])
@@ -98,6 +126,22 @@ def test_a_deeper_valley_is_found_from_runs_alone() -> None:
     best, *others = searched(fit, [wrong])
     assert best.x == pytest.approx([-0.5, -0.1], abs=1e-3)
     assert any(it.x == pytest.approx(wrong.x) for it in others)
+
+
+def test_an_interval_has_the_other_valley_with_its_width() -> None:
+    """Of two valleys alike, with errors of 0.05, one at 0.5 is one error squared less deep."""
+    fit = Known(two_valleys, np.zeros(3), [0.5, 0.0])
+    slope = np.diag([20.0, 20.0])
+    optima = [
+        Optimum(np.array([at, 0.0]), 0.5 * chi2, slope)
+        for at, chi2 in ((-0.5, 1.0), (0.5, 2.0), (0.9, 9.0))
+    ]
+    width = np.full(2, 2.0 * 0.05)
+    straight = Sides(width, width, None)
+    how = (np.zeros(2), 0.05**2 * np.eye(2), np.full(2, 2.0))
+    below, above = reach_of(fit, optima, straight, *how)
+    np.testing.assert_allclose(below, width)
+    np.testing.assert_allclose(above, [1.0 + np.sqrt(2.0**2 - 1.0) * 0.05, 0.1])
 
 
 def test_one_valley_stays_alone() -> None:

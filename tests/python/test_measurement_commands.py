@@ -113,7 +113,7 @@ def test_a_fit_is_printed_and_foretells_from_its_print(
     capsys.readouterr()
 
     (place / "fit.json").write_text(json.dumps(fit), encoding="utf-8")
-    of = ["--of", "span_tension_mean[driven-driver]", "--until", "25 ms"]
+    of = ["--of", "span_tension_mean[driven-driver]", "--until", "0.025"]
     at = ["--at", "sprockets.driver.motion.speed=400 rpm"]
     (row,) = answer(capsys, "predict", "fit.json", *of, *at)["outputs"]
     assert row["lower"] < row["value"] < row["upper"]
@@ -147,7 +147,7 @@ def test_assumptions_are_drawn_and_ranked(place: Path, capsys: pytest.CaptureFix
 
 def test_what_to_measure_next_is_told(place: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The channels of a rig file beside a quantity, at two operating points of one name each."""
-    lengths = ["--until", "20 ms", "--record", "1 s", "--rate", "2 kHz"]
+    lengths = ["--until", "36 ms", "--record", "1 s", "--rate", "2 kHz"]
     slow = ["--excitation", "slow:sprockets.driver.motion.speed=300 rpm"]
     told = answer(
         capsys,
@@ -176,6 +176,9 @@ def test_what_to_measure_next_is_told(place: Path, capsys: pytest.CaptureFixture
         (["tornado", "drive.toml", "--range", "chain.mass=3 kg"], "no path and two bounds"),
         (["tornado", "drive.toml", "--range", "3 kg..4 kg"], "no path and what belongs to it"),
         (["tornado", "drive.toml", "--range", "chain.mass=2..3", "-o", "x.txt"], "must end in"),
+        (["tornado", "drive.toml", "--range", "chain.mass=2..3 kg"], "give 2 its unit too"),
+        (["compare", "drive.toml", "rig.csv"], "no channel corresponds"),
+        (["compare", "drive.toml", "rig.csv", "--rig", "no.toml"], "no.toml: No such file"),
         (["uncertainty", "drive.toml", "--draw", "chain.mass=gauss(1, 2)"], "no distribution"),
         (["calibrate", *RIG, *FREE, "--prior", f"{LOAD}=3"], "no mean and standard deviation"),
         (["predict", "none.json"], "none.json"),

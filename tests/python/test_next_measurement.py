@@ -58,11 +58,14 @@ def test_every_channel_settles_what_it_sees(proposed: xr.Dataset) -> None:
 def test_a_longer_record_leaves_less() -> None:
     free = {LOAD: FREE[LOAD]}
     precise = {"strand": {"quantity": "span_tension[driven-driver]", "gain_uncertainty": 1e-5}}
+    # What a file would say of its numbers, and a name that no file could give, change nothing.
+    precise["N/S"] = precise["strand"] | {"unit": "kN", "scale": 50.0, "sign": -1}
     short, long = (
         cd.next_measurement(drive(), free, precise, until=0.05, record=it) for it in (0.05, "5 s")
     )
-    assert float(long["after"].squeeze()) < float(short["after"].squeeze())
-    assert float(long["length"].squeeze()) > 0.0
+    np.testing.assert_array_equal(*short["after"].squeeze())
+    assert (long["after"] < short["after"]).all()
+    assert (long["length"] > 0.0).all()
 
 
 def test_a_prediction_is_settled_from_where_a_fit_left_it() -> None:
@@ -91,6 +94,9 @@ def test_a_prediction_is_settled_from_where_a_fit_left_it() -> None:
         ({"candidates": []}, "no candidate"),
         ({"candidates": ["tension"]}, "no quantity of a drive"),
         ({"candidates": ["vibration"]}, "no quantity with an amplitude"),
+        ({"candidates": "losses", "rate": 0}, "rate = 0.0, must be positive"),
+        ({"until": "-1 s"}, "until = -1.0, must be positive"),
+        ({"record": np.inf}, "record = inf, must be positive"),
         ({"settle": "chain.mass"}, "is not free"),
         ({"settle": xr.Dataset()}, "no prediction"),
         ({"known": xr.Dataset(coords={"parameter": []})}, "known has no"),

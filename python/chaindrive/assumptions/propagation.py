@@ -113,7 +113,7 @@ def uncertainty(
     """
     _needed(drive)
     _check(samples, level)
-    laws = {path: distribution_of(it, path) for path, it in distributions.items()}
+    laws = {path: distribution_of(it, path, drive) for path, it in distributions.items()}
     opened, ends = _opened(drive, laws)
     names = [*laws, *([_PHASE] if any(starts(opened)) else [])]
     sampler, analyser = (

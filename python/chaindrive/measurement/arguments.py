@@ -48,6 +48,8 @@ def rig_of(options: Mapping[str, Any]) -> dict[str, Any]:
     place = Path(options["rig"])
     try:
         rig = tomllib.loads(place.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise MeasurementError(f"{place}: {error.strerror}", place) from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise MeasurementError(f"{place}: this is no TOML: {error}", place) from error
     known = (*_RIG, *_RIG_TEXT)
@@ -72,7 +74,12 @@ def ranges_of(option: str, texts: Sequence[str]) -> dict[str, tuple[Any, Any]]:
         if not dots:
             message = f"--{option} {path}={text}: this is no path and two bounds"
             raise MeasurementError(message, option, f'such as --{option} "{_EXAMPLE}..40 MN/m"')
-        found[path] = (number_of(low), number_of(high))
+        ends = (number_of(low), number_of(high))
+        bare = [it for it in ends if isinstance(it, float)]
+        if len(bare) == 1:
+            message = f"--{option} {path}={text}: one bound has a unit, and the other none"
+            raise MeasurementError(message, option, f"give {bare[0]:g} its unit too")
+        found[path] = ends
     return found
 
 
@@ -98,8 +105,12 @@ def number_of(text: str) -> Any:
 
 def runs_of(options: Mapping[str, Any]) -> dict[str, Any]:
     """Return how runs are made: length, store, jobs, progress."""
-    given = {name: options[name] for name in ("until", "store", "jobs")}
-    return {name: it for name, it in given.items() if it is not None} | {"progress": is_seen()}
+    given = {
+        name: options[name] for name in ("until", "store", "jobs") if options[name] is not None
+    }
+    if "until" in given:
+        given["until"] = number_of(given["until"])
+    return given | {"progress": is_seen()}
 
 
 def is_seen() -> bool:

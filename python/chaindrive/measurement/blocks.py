@@ -81,6 +81,10 @@ class Blocks:
             abs(periods - round(periods)) < 1e-6 and order < 0.4 * self.per_turn and periods > 0.5
         )
 
+    def resolves(self, order: float) -> bool:
+        """Tell whether an order has two samples a period (Nyquist)."""
+        return order < 0.5 * self.per_turn
+
     def cycle(self) -> tuple[_Floats, _Floats, int]:
         """Return mean and standard error by angle over a period, and how many were averaged."""
         rows = self.values.reshape(-1, self.period)
@@ -111,17 +115,19 @@ def shared_length(records: Sequence[Series], teeth: float | None) -> tuple[float
     -------
     tuple
         Turns of the shaft, of whole turns where each record has four of them, else of whole
-        pitches; or seconds where an angle is not known.
+        pitches; or seconds where an angle is not known, or where there is no pitch: of all of it.
     """
     turns = min(it.turns for it in records)
+    shortest = min(float(it.time[-1] - it.time[0]) for it in records)
     if all(it.angle is not None for it in records):
         if turns >= LEAST + 1 or teeth is None:
             whole = int(turns + 1e-6)
             return float(max(1, whole // min(_MOST, max(whole, 1)))), True
         pitches = int(turns * teeth + 1e-6)
-        if pitches >= LEAST + 1:
+        if pitches >= 1:
             return max(1, pitches // min(_MOST, pitches)) / teeth, True
-    shortest = min(float(it.time[-1] - it.time[0]) for it in records)
+        # Parts of a pitch tell nothing of the next one.
+        return shortest, False
     return shortest / 8.0, False
 
 

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
+from numbers import Integral
 from os import PathLike
 from typing import Any, NamedTuple
 
@@ -17,12 +18,19 @@ from numpy.typing import NDArray
 from chaindrive.drive import Drive, _needed
 from chaindrive.errors import MeasurementError, MeasurementWarning, warn
 from chaindrive.extras import extra
-from chaindrive.measurement.amount import amount
+from chaindrive.measurement.amount import check_share, is_number
 from chaindrive.measurement.evaluations import RunStore
 from chaindrive.measurement.experiment import Experiment, begun
 from chaindrive.measurement.fitting import Fit, Optimum, Worth, differs
-from chaindrive.measurement.free import FreeParameter, free_parameters, open_to
-from chaindrive.measurement.likelihood import Sides, sides_of
+from chaindrive.measurement.free import (
+    FreeParameter,
+    Opened,
+    check_free,
+    free_parameters,
+    open_to,
+    priors_of,
+)
+from chaindrive.measurement.likelihood import Sides, reach_of, sides_of
 from chaindrive.measurement.profiling import Profile, profiled
 from chaindrive.measurement.provenance import fitted_drive
 from chaindrive.measurement.series import channel_names
@@ -66,7 +74,7 @@ def calibrate(
     data: xr.Dataset | Sequence[xr.Dataset],
     free: Mapping[str, tuple[Any, Any]],
     *,
-    priors: Mapping[str, tuple[Any, float]] | None = None,
+    priors: Mapping[str, tuple[Any, Any]] | None = None,
     loss: str = "linear",
     validation: float = 0.25,
     starts: int = 5,
@@ -100,7 +108,8 @@ def calibrate(
         bound: numbers in SI or texts with a unit. ``sensors.CHANNEL.NUISANCE`` frees gain, bias,
         drift, delay, corner or integration of a sensor. Whole numbers cannot be freed.
     priors
-        Mean and standard deviation [SI] of parameters that something else knows of, by path.
+        Mean and standard deviation of parameters that something else knows of, by path: numbers in
+        SI or texts with a unit.
     loss
         ``"linear"``, or a robust loss of SciPy, ``"soft_l1"``, ``"huber"``, ``"cauchy"`` or
         ``"arctan"``, to which single features that contradict all others count less.
@@ -172,13 +181,12 @@ def calibrate(
     drives, records = _listed(drive, data)
     _check(loss, validation, starts, level)
     checked_workers(jobs, executor)
-    keep = RunStore(store)
-    workers = {"jobs": jobs, "executor": executor}
-    experiments, parameters = _experiments(
-        drives, records, free, (validation, keep, until, shaft, workers)
-    )
-    known = _priors(priors or {}, parameters)
+    opened, parameters = _opened(drives, records, free)
+    known = priors_of(priors or {}, opened)
     asked = _profiled(profiles, parameters, loss)
+    keep = RunStore(store)
+    how = (until, shaft, {"jobs": jobs, "executor": executor})
+    experiments = [begun(*it, validation, keep, how) for it in opened]
     with told(progress, "fit") as tell:
         steps = _Steps(tell, 12 + starts)
         found, settled = fitted(experiments, parameters, (known, loss, steps), starts, level)
@@ -255,25 +263,26 @@ def _listed(drive: Any, data: Any) -> tuple[list[Drive], list[xr.Dataset]]:
 
 
 def _check(loss: str, validation: float, starts: int, level: float) -> None:
+    check_share(level, "level")
+    is_part = is_number(validation) and 0.0 <= validation < 0.9
+    is_count = isinstance(starts, Integral) and starts >= 1
     bounds = (
         ("loss", loss, loss in _LOSSES, f"one of {', '.join(_LOSSES)}"),
-        ("validation", validation, 0.0 <= validation < 0.9, "in [0, 0.9)"),
-        ("starts", starts, starts >= 1, "at least 1"),
-        ("level", level, 0.0 < level < 1.0, "in (0, 1)"),
+        ("validation", validation, is_part, "a number in [0, 0.9)"),
+        ("starts", starts, is_count, "a whole number, at least 1"),
     )
     for name, value, is_right, allowed in bounds:
         if not is_right:
             raise MeasurementError(f"{name} = {value!r}, must be {allowed}", name)
 
 
-def _experiments(
+def _opened(
     drives: Sequence[Drive],
     records: Sequence[xr.Dataset],
     free: Mapping[str, tuple[Any, Any]],
-    how: tuple[float, RunStore, Quantity | None, str | None, Mapping[str, Any]],
-) -> tuple[list[Experiment], list[FreeParameter]]:
-    """Return one experiment a record, and the parameters that they share."""
-    share, store, until, shaft, workers = how
+) -> tuple[list[Opened], list[FreeParameter]]:
+    """Return drives, open to what is freed in each, and the parameters that they share."""
+    check_free(free)
     by_path: dict[str, FreeParameter] = {}
     found = []
     for drive, data in zip(drives, records, strict=True):
@@ -287,9 +296,7 @@ def _experiments(
     if lost:
         # The first record says what is wrong with it.
         free_parameters(drives[0], records[0], {path: free[path] for path in lost})
-    order = [by_path[path] for path in free]
-    experiments = [begun(*it, share, store, (until, shaft, workers)) for it in found]
-    return experiments, order
+    return found, [by_path[path] for path in free]
 
 
 def _own(
@@ -312,26 +319,6 @@ def _own(
             continue
         own[path] = bounds
     return own
-
-
-def _priors(
-    priors: Mapping[str, tuple[Any, float]], parameters: Sequence[FreeParameter]
-) -> dict[str, tuple[float, float]]:
-    paths = [it.path for it in parameters]
-    found = {}
-    for path, given in priors.items():
-        if path not in paths:
-            message = f"priors[{path!r}]: it is not free"
-            raise MeasurementError(message, path, f"free are {', '.join(paths)}")
-        if not isinstance(given, list | tuple) or len(given) != 2:
-            message = f"priors[{path!r}] = {given!r} is no pair of mean and standard deviation"
-            raise MeasurementError(message, path)
-        mean, deviation = (amount(it, None, path) for it in given)
-        if not deviation > 0.0:
-            message = f"priors[{path!r}]: the standard deviation is {deviation:g}"
-            raise MeasurementError(message, path, "positive [SI]")
-        found[path] = (mean, deviation)
-    return found
 
 
 def _profiled(
@@ -373,8 +360,12 @@ def _settled(
     if loss != "linear":
         # Of a robust loss χ² is no likelihood.
         return Settled(fit, optima, worth, moved, None)
+
+    def around() -> Sides:
+        return sides_of(fit, optima[0], worth.covariance, _student(level, worth.freedom))
+
+    sides = around()
     for _ in range(_VALLEYS):
-        sides = sides_of(fit, optima[0], worth.covariance, _student(level, worth.freedom))
         if sides.better is None:
             break
         deeper = fit.optimum(sides.better, is_near=True)
@@ -382,6 +373,7 @@ def _settled(
             break
         optima = [deeper, *optima]
         worth = fit.worth(deeper)
+        sides = around()
     return Settled(fit, optima, worth, moved, sides)
 
 
@@ -474,7 +466,10 @@ def _dataset(
             "optimum_chi2": ("valley", chi2, {"units": "1"}),
         }
     t = _student(level, freedom)
-    below, above = _ends(settled, t, covariance) if settled is not None else (nan, nan)
+    below, above = nan, nan
+    if settled is not None:
+        whole = (settled.optima, settled.sides, settled.moved)
+        below, above = reach_of(settled.fit, *whole, covariance, t)
     error = np.maximum(below, above) / t
     # Where an interval is wider than that of a straight drive, so is what follows from it.
     wider = error / np.sqrt(np.diag(covariance))
@@ -539,24 +534,6 @@ def _profiles(
         "profile_lower": ("parameter", ends[0]),
         "profile_upper": ("parameter", ends[1]),
     }
-
-
-def _ends(settled: Settled, t: _Floats, covariance: _Floats) -> tuple[_Floats, _Floats]:
-    """Return how far intervals reach below and above an estimate (p,) [SI]."""
-    fit, best = settled.fit, settled.optima[0]
-    straight = t * np.sqrt(np.diag(covariance))
-    if settled.sides is None:
-        return straight, straight
-    below, above = (
-        np.maximum(np.hypot(it * fit.half, t * np.abs(settled.moved)), straight)
-        for it in (settled.sides.below, settled.sides.above)
-    )
-    for other in settled.optima[1:]:
-        # Another valley that explains the record alike belongs to the interval.
-        alike = 2.0 * (other.cost - best.cost) < t**2
-        below = np.where(alike, np.maximum(below, best.x - other.x), below)
-        above = np.where(alike, np.maximum(above, other.x - best.x), above)
-    return below, above
 
 
 def _scenes(

@@ -15,10 +15,10 @@ from chaindrive.analysis.parts import sprockets
 from chaindrive.analysis.signal import turning
 from chaindrive.drive import Drive, _needed
 from chaindrive.errors import MeasurementError
-from chaindrive.measurement.correspondence import correspondence, reference_shaft
+from chaindrive.measurement.correspondence import correspondence, other_speeds, reference_shaft
 from chaindrive.measurement.faults import too_slow
 from chaindrive.measurement.features import readings
-from chaindrive.measurement.free import free_parameters, open_to
+from chaindrive.measurement.free import check_free, free_parameters, open_to
 from chaindrive.measurement.identifiability import (
     Identifiability,
     identifiability,
@@ -45,6 +45,8 @@ _DENSER = 4
 _WANTED = 0.1
 #: Bending that is told [–] (assumed): errors of a fit are then those near the start alone.
 _BENT = 0.2
+#: Blocks that tell the noise of a mean, and multiples of it by which means differ [–] (assumed).
+_BLOCKS, _CLEAR = 8, 4.0
 #: Slips of units that are looked for where means differ: their factors, and what they are.
 _SLIPS: tuple[tuple[float, str], ...] = (
     (1000.0, "kilo"),
@@ -141,6 +143,7 @@ def check_data(
     _needed(drive)
     names = channel_names(data)
     if free is not None:
+        check_free(free)
         drive = open_to(drive, free)
     parameters = free_parameters(drive, data, free) if free is not None else []
     with told(progress, "check") as tell:
@@ -149,7 +152,7 @@ def check_data(
             tell(1.0 / (2.0 + 2.0 * len(parameters)))
         shaft = shaft or reference_shaft(run, data)
         rows = [_beside(run, data, name, pairs.get(name)) for name in names]
-        findings = _sampling(run, data, shaft)
+        findings = other_speeds(run, data) + _sampling(run, data, shaft)
         found, moved = None, None
         if parameters:
             wheels = sprockets(run)
@@ -158,7 +161,8 @@ def check_data(
             how = readings(data, run, pairs, sensors, shaft, teeth)
             if not how:
                 message = "no channel has an amplitude that a drive knows: nothing can be fitted"
-                raise MeasurementError(message, "data")
+                hint = "say what channels are: {'flange': 'sprocket_torque[driver]'}"
+                raise MeasurementError(message, "data", hint)
             moved = sensitivities(drive, run, how, parameters, tell)
             found = identifiability(parameters, moved.jacobian, moved.covariance, moved.noise)
     return _dataset(data, rows, findings, found, moved)
@@ -175,8 +179,9 @@ def run_for(
     seconds, rate = 0.0, 0.0
     for name in channel_names(data):
         channel = data[name]
-        time = data[str(channel.dims[0])]
-        seconds = max(seconds, float(time[-1] - time[0]))
+        time = data[str(channel.dims[0])].to_numpy()
+        # A part of a record may have nothing of a channel.
+        seconds = max(seconds, float(np.ptp(time)) if time.size else 0.0)
         # A low-pass is computed at more than eight times its corner.
         rate = max(
             rate, float(channel.attrs["sampling_rate"]), 2.0 * (sensor_of(data, name).corner or 0.0)
@@ -216,14 +221,26 @@ def _beside(
         problem = f"is in {unit or 'no unit'}, and the quantity in {quantity.unit}"
         return Corresponding(name, quantity, unit, ours, math.nan, problem)
     time = run["time"].to_numpy()
-    theirs = float(sensor.observe(quantity.of(run, sensor), time).mean())
-    spread = float(np.nanstd(data[name].to_numpy()))
-    return Corresponding(name, quantity, unit, ours, theirs, _unlike(ours, theirs, spread))
+    read = sensor.observe(quantity.of(run, sensor), time)
+    theirs, spread = float(read.mean()), float(read.std())
+    problem = _unlike(ours, _noise(data[name].to_numpy()), theirs, spread)
+    return Corresponding(name, quantity, unit, ours, theirs, problem)
 
 
-def _unlike(ours: float, theirs: float, spread: float) -> str:
-    """Return how two means contradict each other, and what slip would explain it."""
-    if max(abs(ours), abs(theirs)) < 2.0 * spread:
+def _noise(values: _Floats) -> float:
+    """Return the standard error of a mean, of blocks one after the other."""
+    known = values[np.isfinite(values)]
+    means = [float(it.mean()) for it in np.array_split(known, _BLOCKS) if it.size]
+    return float(np.std(means)) / math.sqrt(len(means))
+
+
+def _unlike(ours: float, noise: float, theirs: float, spread: float) -> str:
+    """Return how two means contradict each other, and what slip would explain it.
+
+    Means within the scatter of the run are near zero, and those within the noise of the record
+    may be anything.
+    """
+    if max(abs(ours), abs(theirs)) < 2.0 * spread or abs(ours - theirs) < _CLEAR * noise:
         return ""
     ratio = ours / theirs if theirs else math.inf
     for factor, what in _SLIPS:

@@ -14,9 +14,10 @@ from chaindrive.analysis.order_names import order_names
 from chaindrive.analysis.parts import sprockets
 from chaindrive.errors import MeasurementError
 from chaindrive.measurement.alignment import Aligned, in_angle, in_time
+from chaindrive.measurement.amount import check_share
 from chaindrive.measurement.bands import Band, Judgement, band_of, judged, numerical_error
 from chaindrive.measurement.blocks import Blocks, blocks_of, shared_length
-from chaindrive.measurement.correspondence import correspondence, reference_shaft
+from chaindrive.measurement.correspondence import correspondence, other_speeds, reference_shaft
 from chaindrive.measurement.lines import Line, mesh_lines
 from chaindrive.measurement.quantities import MeasuredQuantity
 from chaindrive.measurement.series import (
@@ -151,7 +152,7 @@ def compare(
     >>> found["verdict"].item()
     'misses'
     """
-    _check(run, level, telling)
+    _check(run, align, level, telling)
     pairs = correspondence(data, run)
     if not pairs:
         names = ", ".join(map(repr, channel_names(data)))
@@ -166,16 +167,19 @@ def compare(
     found = [
         _compared(run, data, pair, shaft, teeth, (align, level, telling)) for pair in pairs.items()
     ]
+    found[0].notes += [str(it) for it in other_speeds(run, data)]
     return _dataset(run, data, found, shaft, level)
 
 
-def _check(run: xr.Dataset, level: float, telling: float) -> None:
+def _check(run: xr.Dataset, align: str | None, level: float, telling: float) -> None:
     if "scene" not in run.attrs or "time" not in run.dims:
         message = "run is no run of chaindrive"
         raise MeasurementError(message, "run", "the dataset of chaindrive.simulate")
-    for name, value in (("level", level), ("telling", telling)):
-        if not 0.0 < value < 1.0:
-            raise MeasurementError(f"{name} = {value}, must be in (0, 1)", name)
+    if align not in (None, "angle", "time"):
+        message = f"align = {align!r}, must be 'angle' or 'time'"
+        raise MeasurementError(message, "align", "by the angle where it is known, when absent")
+    check_share(level, "level")
+    check_share(telling, "telling")
 
 
 def _compared(
@@ -200,7 +204,7 @@ def _compared(
             (it, math.nan, math.nan, band, Judgement("cannot tell", reason)) for it in STATISTICS
         ]
         return found
-    theirs = simulated_series(run, quantity, sensor, ours.rate, shaft)
+    theirs = simulated_series(run, quantity, sensor, ours, shaft)
     _units(found, quantity)
     length, is_angle = shared_length([ours, theirs], teeth)
     cut = [blocks_of(it, length, is_angle, teeth) for it in (ours, theirs)]
@@ -209,9 +213,7 @@ def _compared(
     each = 1.0 - (1.0 - level) / (len(STATISTICS) + len(names) + 1)
     size = float(np.sqrt(np.mean(theirs.values**2)))
     late = [
-        blocks_of(
-            simulated_series(run, quantity, sensor, ours.rate, shaft, it), length, is_angle, teeth
-        )
+        blocks_of(simulated_series(run, quantity, sensor, ours, shaft, it), length, is_angle, teeth)
         for it in LATE
     ]
     for statistic in STATISTICS:

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
+from chaindrive.analysis.parts import sprockets
+from chaindrive.analysis.signal import turning
 from chaindrive.errors import MeasurementError
 from chaindrive.measurement.quantities import MeasuredQuantity, guessed, quantity_of
 from chaindrive.measurement.series import channel_names, sensor_of
+from chaindrive.measurement.time_base import Finding
 
-__all__ = ["correspondence", "reference_shaft"]
+__all__ = ["correspondence", "other_speeds", "reference_shaft"]
+
+#: Share by which speeds differ that are told (assumed): a motor slips by less.
+_APART = 0.05
 
 
 def correspondence(data: xr.Dataset, run: xr.Dataset) -> dict[str, MeasuredQuantity]:
@@ -40,3 +48,36 @@ def reference_shaft(run: xr.Dataset, data: xr.Dataset) -> str | None:
         f"the measurement knows how {', '.join(known)} turns, and the drive has {', '.join(ours)}"
     )
     raise MeasurementError(message, "turns", "name a sprocket or shaft of the drive")
+
+
+def other_speeds(run: xr.Dataset, data: xr.Dataset) -> list[Finding]:
+    """Return the sprockets that turn at another speed in the measurement than in the run.
+
+    Where one of both is not steady, nothing is said: a run may be another part of a run-up.
+    """
+    if "sprocket_angle" not in run:
+        return []
+    found = []
+    every = [it for name, it in data.data_vars.items() if str(name).startswith("sprocket_angle")]
+    for angles in every:
+        base = next(str(dim) for dim in angles.dims if str(dim).startswith("time"))
+        for shaft in map(str, angles["sprocket"].to_numpy()):
+            if shaft not in sprockets(run):
+                continue
+            ours = _speed(data[base].to_numpy(), angles.sel(sprocket=shaft).to_numpy())
+            theirs = _speed(run["time"].to_numpy(), turning(run, shaft)[0])
+            if abs(ours - theirs) > _APART * max(ours, theirs):
+                speeds = [f"{it * 30.0 / np.pi:.4g} rpm" for it in (ours, theirs)]
+                text = f"turns at {speeds[0]} in the record, and at {speeds[1]} in the drive"
+                found.append(Finding("speed", shaft, text))
+    return found
+
+
+def _speed(time: NDArray[np.float64], angle: NDArray[np.float64]) -> float:
+    """Return the speed of a shaft [rad/s]; NaN of one that is not steady, or not known."""
+    known = np.isfinite(angle)
+    if known.sum() < 3:
+        return np.nan
+    ends = [0, int(known.sum()) // 2, -1]
+    first, last = np.abs(np.diff(angle[known][ends]) / np.diff(time[known][ends]))
+    return float(first + last) / 2.0 if abs(first - last) <= _APART * max(first, last) else np.nan

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from chaindrive.extras import extra
-from chaindrive.measurement.raw import RawChannel, RawRecord, numbers
+from chaindrive.measurement.raw import RawChannel, RawRecord, numbered, numbers
 from chaindrive.measurement.units import named_unit
 
 __all__ = ["read", "read_frame"]
@@ -30,15 +30,21 @@ def read(path: Path) -> RawRecord:
 def read_frame(frame: Any, units: Mapping[str, str | None] | None = None) -> RawRecord:
     """Read a DataFrame: a column a channel, its index the time where it is one."""
     stated = {**frame.attrs.get("units", {}), **(units or {})}
-    columns = {str(name): frame[name] for name in frame.columns}
+    columns = [(str(name), column) for name, column in frame.items()]
     index = frame.index
-    if isinstance(index, pd.DatetimeIndex | pd.TimedeltaIndex) or index.name is not None:
-        columns = {str(index.name or "time"): index.to_series()} | columns
+    is_time = isinstance(index, pd.DatetimeIndex | pd.TimedeltaIndex)
+    # A column may be the index too.
+    if (is_time or index.name is not None) and index.name not in frame:
+        columns.insert(0, (str(index.name or "timestamp"), index.to_series()))
+    named = [named_unit(heading) for heading, _ in columns]
+    names = numbered([name for name, _ in named])
     channels, notes = [], []
-    for heading, column in columns.items():
-        name, unit = named_unit(heading)
+    for name, (_, unit), (heading, column) in zip(names, named, columns, strict=True):
         unit = stated.get(heading) or unit
         if column.dtype.kind in "mM":
+            if column.isna().all():
+                notes.append(("text", name, "holds nothing, and is left out"))
+                continue
             first = column.dropna().iloc[0] if column.dtype.kind == "M" else pd.Timedelta(0)
             seconds = (column - first).dt.total_seconds().to_numpy(dtype=np.float64)
             channels.append(RawChannel(name, "s", seconds))

@@ -10,6 +10,7 @@ import struct
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 import xarray as xr
@@ -27,6 +28,8 @@ Row = Mapping[str, float]
 
 #: Variants of a part that an executor computes: what is lost when the program is killed [–].
 _PART = 32
+#: What reading a file raises that was cut off, or of which single bits are wrong.
+_DAMAGES = (OSError, ValueError, KeyError, EOFError, RuntimeError, BadZipFile)
 
 
 class RunStore:
@@ -60,7 +63,7 @@ class RunStore:
                 }
         except FileNotFoundError:
             return None
-        except (OSError, ValueError, KeyError) as error:
+        except _DAMAGES as error:
             message = f"{file} is no run of a fit: {error}"
             raise MeasurementError(message, file, "delete it, and it is computed again") from error
         found = xr.Dataset(parts, attrs=about["attrs"])

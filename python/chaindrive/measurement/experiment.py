@@ -15,7 +15,7 @@ from chaindrive.analysis.parts import sprockets
 from chaindrive.drive import Drive
 from chaindrive.errors import MeasurementError
 from chaindrive.measurement.checking import run_for
-from chaindrive.measurement.correspondence import correspondence, reference_shaft
+from chaindrive.measurement.correspondence import correspondence, other_speeds, reference_shaft
 from chaindrive.measurement.evaluations import Evaluations, RunStore
 from chaindrive.measurement.features import (
     Feature,
@@ -34,6 +34,9 @@ from chaindrive.settings import Quantity
 __all__ = ["Errors", "Experiment", "begun", "parted"]
 
 _Floats = NDArray[np.float64]
+
+#: Samples of a channel that a part of a record has at least [–].
+_LEAST = 8
 
 
 class Errors(NamedTuple):
@@ -139,6 +142,17 @@ def parted(data: xr.Dataset, share: float) -> tuple[xr.Dataset, xr.Dataset | Non
     return first, data.isel({base: slice(cut, None) for base, cut in at.items()})
 
 
+def _check_parts(parts: Mapping[str, xr.Dataset], names: Sequence[str]) -> None:
+    """Refuse a channel of which a part of the record has next to nothing: not all end together."""
+    for what, part in parts.items():
+        for name in names:
+            count = int(np.isfinite(part[name]).sum())
+            if count < _LEAST:
+                message = f"{name} has {count} samples with a value in what is {what}"
+                hint = f"at least {_LEAST}: cut the record by `until`, or take another `validation`"
+                raise MeasurementError(message, name, hint)
+
+
 def begun(
     drive: Drive,
     data: xr.Dataset,
@@ -169,17 +183,26 @@ def begun(
     length = None if until is None else str(until)
     channels = [(name, dict(fitted[name].attrs)) for name in channel_names(data)]
     spans = {
-        str(dim): [float(fitted[dim][0]), float(fitted[dim][-1])]
-        for dim in fitted.dims
+        str(dim): [float(it) for it in fitted[dim].to_numpy()[[0, -1] if size else []]]
+        for dim, size in fitted.sizes.items()
         if str(dim).startswith("time")
     }
     of = [_core.__build__, drive.resolved().text, length, repr(channels), spans]
     run = store.kept(of, lambda: run_for(drive, fitted, until)[0])
+    apart = other_speeds(run, fitted)
+    if apart and not any(".motion" in it.path for it in parameters):
+        message = f"{apart[0]}: a fit would look for it in other parameters"
+        raise MeasurementError(
+            message, "drive", "set the speed of the drive, free it, or mend `turns`"
+        )
     pairs = correspondence(data, run)
     shaft = shaft or reference_shaft(run, data)
     wheels = sprockets(run)
     teeth = float(wheels[shaft].teeth) if shaft in wheels else None
     sensors = {name: sensor_of(data, name) for name in channel_names(data)}
+    names = [it for it in pairs if not (pairs[it].is_relative or sensors[it].relative)]
+    rest = {} if kept is None else {"kept for validation": kept}
+    _check_parts({"fitted": fitted} | rest, names)
     reads = readings(fitted, run, pairs, sensors, shaft, teeth)
     if not reads:
         message = "no channel has an amplitude that a drive knows: nothing can be fitted"

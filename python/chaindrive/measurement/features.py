@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from chaindrive.errors import MeasurementError
 from chaindrive.measurement.bands import numerical_error
 from chaindrive.measurement.blocks import Blocks, Estimate, blocks_of, shared_length
 from chaindrive.measurement.quantities import MeasuredQuantity
@@ -35,14 +36,14 @@ class Reading(NamedTuple):
     channel: str
     quantity: MeasuredQuantity
     sensor: Sensor
-    rate: float
-    """Samples a second of the measurement [Hz]."""
     length: float
     """Length of a block, in turns or seconds."""
     is_angle: bool
     """Whether it is in turns."""
     teeth: float | None
     shaft: str | None
+    orders: tuple[float, ...]
+    """Multiples of the mesh that measurement and run resolve."""
     measured: Series
 
 
@@ -81,10 +82,12 @@ def readings(
         if quantity.is_relative or sensor.relative:
             continue
         ours = measured_series(data, name, shaft)
-        theirs = simulated_series(run, quantity, sensor, ours.rate, shaft)
+        theirs = simulated_series(run, quantity, sensor, ours, shaft)
         length, is_angle = shared_length([ours, theirs], teeth)
-        look = (length, is_angle, teeth, shaft)
-        found.append(Reading(name, quantity, sensor, ours.rate, *look, ours))
+        look = (length, is_angle, teeth)
+        cut = [blocks_of(it, *look) for it in (ours, theirs)]
+        orders = tuple(_orders(cut, teeth))
+        found.append(Reading(name, quantity, sensor, *look, shaft, orders, ours))
     return found
 
 
@@ -112,19 +115,24 @@ def features_of(
         series = it.measured
         if run is not None:
             sensor = (sensors or {}).get(it.channel, it.sensor)
-            series = simulated_series(run, it.quantity, sensor, it.rate, it.shaft, late)
+            series = simulated_series(run, it.quantity, sensor, it.measured, it.shaft, late)
         blocks = blocks_of(series, it.length, it.is_angle, it.teeth)
         for name in ("mean", "std", "p1", "p99"):
             found.append(Feature(it.channel, name, blocks.estimate(name)))
-        for order in _orders(blocks, it.teeth):
+        for order in it.orders:
+            if not blocks.resolves(order):
+                message = f"order {order:g} of {it.shaft} has less than two samples in {it.channel}"
+                raise MeasurementError(
+                    message, it.channel, "narrower bounds of speeds, or a record of more samples"
+                )
             found.append(Feature(it.channel, f"order {order:g}", blocks.order(order)[1]))
     return found
 
 
-def _orders(blocks: Blocks, teeth: float | None) -> list[float]:
-    if teeth is None or not blocks.period:
+def _orders(cut: Sequence[Blocks], teeth: float | None) -> list[float]:
+    if teeth is None or not all(it.period for it in cut):
         return []
-    return [order for k in _MULTIPLES if blocks.holds(order := k * teeth)]
+    return [order for k in _MULTIPLES if all(it.holds(order := k * teeth) for it in cut)]
 
 
 def values_of(found: Sequence[Feature]) -> NDArray[np.float64]:

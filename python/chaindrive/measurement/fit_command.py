@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from chaindrive.assumptions.outputs import OUTPUTS
-from chaindrive.errors import MeasurementError
+from chaindrive.errors import MeasurementError, tell
 from chaindrive.measurement.arguments import (
     drive_of,
     is_seen,
@@ -51,15 +51,14 @@ def calibrated(options: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
     priors = {path: _prior(path, text) for path, text in _priors(options).items()}
     starts = {} if options["starts"] is None else {"starts": options["starts"]}
     fit = calibrate(drive_of(options), data, free, priors=priors, **starts, **runs_of(options))
-    page = str(fit.attrs["summary"])
     for text, place in places.items():
         if Path(text).suffix != ".toml":
             place.write(report(fit).encode())
         elif "scene" in fit.attrs:
             place.write(str(fit.attrs["scene"]).encode())
         else:
-            page += f"\n{text} is not written: no drive comes of a fit that is refused."
-    return page, _answer(fit, data)
+            tell(f"{text} is not written: no drive comes of a fit that is refused")
+    return str(fit.attrs["summary"]), _answer(fit, data)
 
 
 def _priors(options: Mapping[str, Any]) -> dict[str, str]:

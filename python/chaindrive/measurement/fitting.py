@@ -155,7 +155,7 @@ class Fit:
             (n, *priors[it.path]) for n, it in enumerate(parameters) if it.path in priors
         ]
         self._loss, self._tell = loss, tell
-        self._seen: dict[tuple[int, bytes], _Floats | None] = {}
+        self._seen: dict[tuple[bool, int, bytes], _Floats | None] = {}
         #: Designs that derivatives are taken from: one, or all where one is too noisy.
         self.designs = 1
         #: Steps of differences, as shares of half a range (p,) [–].
@@ -224,12 +224,17 @@ class Fit:
         size = np.linalg.norm(self._whole(jacobian), axis=0)
         self.steps = np.clip(1.0 / np.maximum(size, 1.0), _LEAST_STEP, self.steps)
 
-    def features(self, points: Sequence[_Floats], design: int = 0) -> list[_Floats | None]:
-        """Return the features of parameter vectors [SI]; None where a run fails."""
-        keys = [(design, x.tobytes()) for x in points]
+    def features(
+        self, points: Sequence[_Floats], design: int = 0, *, kept: bool = False
+    ) -> list[_Floats | None]:
+        """Return the features of parameter vectors [SI]; None where a run fails.
+
+        Those of the part that is fitted, or of the one that is kept.
+        """
+        keys = [(kept, design, x.tobytes()) for x in points]
         new = {key: x for key, x in zip(keys, points, strict=True) if key not in self._seen}
         if new:
-            found = self._computed(list(new.values()), design)
+            found = self._computed(list(new.values()), design, kept)
             self._seen |= dict(zip(new, found, strict=True))
             self._tell()
         return [self._seen[key] for key in keys]
@@ -238,11 +243,11 @@ class Fit:
         """Return the points [SI] that one design has been run at, with the features there."""
         return [
             (np.frombuffer(bits), found)
-            for (design, bits), found in self._seen.items()
-            if design == 0 and found is not None
+            for (kept, design, bits), found in self._seen.items()
+            if design == 0 and not kept and found is not None
         ]
 
-    def _computed(self, points: Sequence[_Floats], design: int) -> list[_Floats | None]:
+    def _computed(self, points: Sequence[_Floats], design: int, kept: bool) -> list[_Floats | None]:
         vectors = [self._named(x) for x in points]
         parts: list[list[_Floats | None]] = []
         for it in self.experiments:
@@ -250,7 +255,7 @@ class Fit:
             runs = it.evaluations.runs([it.row(x, at) for x in vectors], may_fail=True)
             parts.append(
                 [
-                    None if run is None else it.simulated(run, x)
+                    None if run is None else it.simulated(run, x, kept)
                     for run, x in zip(runs, vectors, strict=True)
                 ]
             )
@@ -264,6 +269,8 @@ class Fit:
         factor: float = 1.0,
         design: int = 0,
         among: Sequence[int] | None = None,
+        *,
+        kept: bool = False,
     ) -> _Floats:
         """Return the change of features with half ranges at a point [SI], (features, p).
 
@@ -278,18 +285,18 @@ class Fit:
             below[n] = max(x[n] - step, self.low[n])
             points += [above, below]
             widths.append((above[n] - below[n]) / self.half[n])
-        found = self._all(points, design)
+        found = self._all(points, design, kept=kept)
         columns = [(found[2 * n] - found[2 * n + 1]) / width for n, width in enumerate(widths)]
         return np.stack(columns, axis=1)
 
-    def replicated(self, x: _Floats) -> tuple[_Floats, _Floats]:
+    def replicated(self, x: _Floats, *, kept: bool = False) -> tuple[_Floats, _Floats]:
         """Return derivatives by designs of two phases: their mean, and its standard error.
 
         Of one step, for what bends is no noise. Where no chain has a phase, by one step and by two
         of it, whose difference is more than noise.
         """
         how = [(1.0, 0), (1.0, 1)] if self._designs > 1 else [(1.0, 0), (2.0, 0)]
-        slopes = [self.derivatives(x, *it) for it in how]
+        slopes = [self.derivatives(x, *it, kept=kept) for it in how]
         return np.mean(slopes, axis=0), np.std(slopes, axis=0)
 
     def is_noisy(self, jacobian: _Floats, noise: _Floats) -> bool:
@@ -463,8 +470,8 @@ class Fit:
     def _named(self, x: _Floats) -> dict[str, float]:
         return {it.path: float(value) for it, value in zip(self.parameters, x, strict=True)}
 
-    def _all(self, points: Sequence[_Floats], design: int) -> list[_Floats]:
-        found = self.features(points, design)
+    def _all(self, points: Sequence[_Floats], design: int, *, kept: bool = False) -> list[_Floats]:
+        found = self.features(points, design, kept=kept)
         for x, it in zip(points, found, strict=True):
             if it is None:
                 at = ", ".join(f"{path} = {value:.6g}" for path, value in self._named(x).items())

@@ -43,10 +43,10 @@ def read_raw(source: Any, options: Mapping[str, Any]) -> tuple[RawRecord, str]:
         There is no such file, its ending is of no format, or its reader refuses it.
     """
     if isinstance(source, xr.Dataset):
-        return _of("netcdf").read_dataset(source), "dataset"
+        return _with_channels(_of("netcdf").read_dataset(source), "dataset"), "dataset"
     if not isinstance(source, str | PathLike):
         if hasattr(source, "columns") and hasattr(source, "index"):
-            return _of("data_frame").read_frame(source), "DataFrame"
+            return _with_channels(_of("data_frame").read_frame(source), "DataFrame"), "DataFrame"
         kind = type(source).__name__
         message = f"path is a {kind}, needed is a file, a pandas DataFrame or an xarray Dataset"
         raise TypeError(message)
@@ -78,9 +78,14 @@ def read_raw(source: Any, options: Mapping[str, Any]) -> tuple[RawRecord, str]:
         raise MeasurementError(
             message, path, "is the file whole, and is its ending right?"
         ) from error
-    if not record.channels:
-        raise MeasurementError(f"{path}: no channel of numbers is in it", path)
-    return record, path.name
+    return _with_channels(record, path), path.name
+
+
+def _with_channels(record: RawRecord, source: str | Path) -> RawRecord:
+    """Return a record as it is, or refuse one that holds no number."""
+    if not any(it.values.size for it in record.channels):
+        raise MeasurementError(f"{source}: no channel of numbers is in it", source)
+    return record
 
 
 def _of(module: str) -> Any:

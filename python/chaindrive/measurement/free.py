@@ -3,23 +3,31 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import xarray as xr
 
 from chaindrive.drive import Drive, diff
 from chaindrive.errors import MeasurementError, SceneError
-from chaindrive.measurement.amount import amount
+from chaindrive.measurement.amount import is_number, read_amount
 from chaindrive.measurement.sensor import NUISANCES
 from chaindrive.measurement.series import channel_names, sensor_of
 
-__all__ = ["FreeParameter", "free_parameters", "open_to", "value_at"]
+__all__ = [
+    "FreeParameter",
+    "Opened",
+    "check_free",
+    "check_unit",
+    "free_parameters",
+    "open_to",
+    "priors_of",
+    "value_at",
+]
 
 #: A path of this beginning is a nuisance of a sensor: ``sensors.flange.gain``.
 _SENSORS = "sensors."
-_UNITS = {"delay": "s", "corner": "Hz", "integration": "s"}
 
 
 @dataclass(frozen=True)
@@ -64,6 +72,10 @@ class FreeParameter:
         return middle - step, middle, middle + step
 
 
+#: A drive, open to what is freed, its record, and the parameters that mean something there.
+Opened: TypeAlias = tuple[Drive, xr.Dataset, list[FreeParameter]]
+
+
 def free_parameters(
     drive: Drive, data: xr.Dataset, free: Mapping[str, tuple[Any, Any]]
 ) -> list[FreeParameter]:
@@ -83,11 +95,7 @@ def free_parameters(
     MeasurementError
         A path leads nowhere, bounds are in the wrong order, or a whole number would be freed.
     """
-    if not isinstance(free, Mapping) or not free:
-        message = "free is no mapping from paths to bounds"
-        raise MeasurementError(
-            message, "free", "such as {'chain.stiffness': ('10 MN/m', '40 MN/m')}"
-        )
+    check_free(free)
     scene = drive.resolved().to_dict()
     found = []
     for path, bounds in free.items():
@@ -102,6 +110,99 @@ def free_parameters(
             message = f"free[{path!r}]: {one.low:g} is not below {one.high:g}"
             raise MeasurementError(message, path, "give the lower bound first")
     return found
+
+
+def check_free(free: Any) -> None:
+    """Refuse what is no mapping from paths to bounds.
+
+    Raises
+    ------
+    MeasurementError
+        It is none, or empty.
+    """
+    if not isinstance(free, Mapping) or not free:
+        message = "free is no mapping from paths to bounds"
+        raise MeasurementError(
+            message, "free", "such as {'chain.stiffness': ('10 MN/m', '40 MN/m')}"
+        )
+
+
+def priors_of(
+    priors: Mapping[str, tuple[Any, Any]], opened: Sequence[Opened]
+) -> dict[str, tuple[float, float]]:
+    """Return mean and standard deviation of what is known of parameters, by path, in SI.
+
+    Parameters
+    ----------
+    priors
+        Both by path: numbers in SI, or texts with a unit.
+    opened
+        Drives and records whose parameters they may be.
+
+    Raises
+    ------
+    MeasurementError
+        A path is not free, or these are no pair of numbers of its unit.
+    """
+    owners = {it.path: (it, drive, data) for drive, data, own in opened for it in own}
+    found = {}
+    for path, given in priors.items():
+        if path not in owners:
+            message = f"priors[{path!r}]: it is not free"
+            raise MeasurementError(message, path, f"free are {', '.join(owners)}")
+        if not isinstance(given, list | tuple) or len(given) != 2:
+            message = f"priors[{path!r}] = {given!r} is no pair of mean and standard deviation"
+            raise MeasurementError(message, path)
+        try:
+            mean = _amount(*owners[path], given[0])
+            deviation = _amount(*owners[path], given[1], is_difference=True)
+        except MeasurementError as error:
+            raise MeasurementError(f"priors[{path!r}] = {given!r}: {error}", path) from error
+        if not deviation > 0.0:
+            message = f"priors[{path!r}]: the standard deviation is {deviation:g}"
+            raise MeasurementError(message, path, "positive [SI]")
+        found[path] = (mean, deviation)
+    return found
+
+
+def _amount(
+    it: FreeParameter, drive: Drive, data: xr.Dataset, given: Any, *, is_difference: bool = False
+) -> float:
+    """Return a finite number in SI of what a parameter is."""
+    if it.is_of_sensor:
+        return _nuisance(data, it.path, given)
+    found = read_amount(given, it.path, is_difference=is_difference)
+    if not is_number(found.value):
+        raise MeasurementError(f"{it.path} = {found.value}, must be finite", it.path)
+    if found.unit is not None:
+        check_unit(drive, it.path, found.unit, it.low)
+    return found.value
+
+
+def check_unit(drive: Drive, path: str, unit: str, known: float) -> None:
+    """Refuse a unit that a value of a scene cannot be given in.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    path
+        Path of the value.
+    unit
+        Unit of SI, ``"1"`` of a pure number.
+    known
+        What the value may be [SI], so that nothing but the unit can be wrong.
+
+    Raises
+    ------
+    MeasurementError
+        The scene does not take it.
+    """
+    try:
+        drive.replace({path: f"{known!r} {'' if unit == '1' else unit}"})
+    except SceneError as error:
+        message = f"{path}: {error.problems[0].message}"
+        raise MeasurementError(message, path, error.hint) from None
 
 
 def open_to(drive: Drive, paths: Iterable[str]) -> Drive:
@@ -140,10 +241,23 @@ def _of_sensor(data: xr.Dataset, path: str, bounds: Any) -> FreeParameter:
             path,
             f"sensors.CHANNEL.NUISANCE, of {', '.join(map(repr, names))}: {', '.join(NUISANCES)}",
         )
-    unit = _UNITS.get(name)
-    low, high = (amount(it, unit, path) for it in bounds)
+    try:
+        low, high = (_nuisance(data, path, it) for it in bounds)
+    except MeasurementError as error:
+        raise MeasurementError(f"free[{path!r}]: {error}", path) from error
     start = getattr(sensor_of(data, channel), name)
     return FreeParameter(path, low, high, 0.5 * (low + high) if start is None else float(start))
+
+
+def _nuisance(data: xr.Dataset, path: str, given: Any) -> float:
+    """Return what a nuisance of a sensor is when it is given so [SI], as the sensor takes it."""
+    channel, _, name = path.removeprefix(_SENSORS).rpartition(".")
+    sensor = sensor_of(data, channel)
+    unit = str(data[channel].attrs["units"]) or sensor.unit
+    value = getattr(sensor.replace(unit=unit, **{name: given}), name)
+    if value is None:
+        raise MeasurementError(f"{name} = None is no number", path)
+    return float(value)
 
 
 def _of_scene(drive: Drive, scene: Mapping[str, Any], path: str, bounds: Any) -> FreeParameter:
@@ -153,7 +267,7 @@ def _of_scene(drive: Drive, scene: Mapping[str, Any], path: str, bounds: Any) ->
             value = value_at(drive.replace({path: bound}).resolved().to_dict(), path)
         except SceneError as error:
             raise MeasurementError(f"free[{path!r}]: {error}", path) from error
-        if isinstance(value, bool) or not isinstance(value, int | float):
+        if not is_number(value):
             message = f"free[{path!r}]: {value!r} is no number that a fit can move"
             raise MeasurementError(message, path)
         ends.append(float(value))
@@ -168,8 +282,7 @@ def _of_scene(drive: Drive, scene: Mapping[str, Any], path: str, bounds: Any) ->
             "whole numbers, such as teeth and links, are not freed",
         ) from error
     start = value_at(scene, path)
-    is_number = isinstance(start, int | float) and not isinstance(start, bool)
-    return FreeParameter(path, ends[0], ends[1], float(start) if is_number else middle)
+    return FreeParameter(path, ends[0], ends[1], float(start) if is_number(start) else middle)
 
 
 _STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from chaindrive.measurement.fitting import Fit, Optimum
 
-__all__ = ["Sides", "sides_of"]
+__all__ = ["Sides", "reach_of", "sides_of"]
 
 _Floats = NDArray[np.float64]
 
@@ -119,6 +119,50 @@ def sides_of(fit: Fit, best: Optimum, covariance: _Floats, t: _Floats) -> Sides:
     ends = np.array([it.end for it in every]).reshape(-1, 2)
     below, above = np.maximum(ends, 1.0).T * width
     return Sides(below, above, better)
+
+
+def reach_of(
+    fit: Fit,
+    optima: Sequence[Optimum],
+    sides: Sides | None,
+    moved: _Floats,
+    covariance: _Floats,
+    t: _Floats,
+) -> tuple[_Floats, _Floats]:
+    """Return how far intervals reach below and above the best of several optima (p,) [SI].
+
+    Another valley belongs to an interval where it explains the record alike, with what its own
+    straight line leaves it: ``t² = χ²_v − χ²(θ̂) + (θ_k − θ_vk)² / Σ_v,kk``.
+
+    Parameters
+    ----------
+    fit, optima
+        The fit and its optima, the best first.
+    sides
+        Its sides; None for those of a straight drive.
+    moved
+        What the best was moved by where all that is chosen was chosen anew (p,) [SI].
+    covariance
+        Σ, of a straight drive (p, p) [SI²].
+    t
+        Student's t of every parameter (p,).
+    """
+    best = optima[0]
+    straight = t * np.sqrt(np.diag(covariance))
+    if sides is None:
+        return straight, straight
+    below, above = (
+        np.maximum(np.hypot(it * fit.half, t * np.abs(moved)), straight)
+        for it in (sides.below, sides.above)
+    )
+    for other in optima[1:]:
+        left = t**2 - 2.0 * (other.cost - best.cost)
+        variance = np.diag(np.linalg.pinv(other.jacobian.T @ other.jacobian))
+        own = np.sqrt(np.maximum(left, 0.0) * variance) * fit.half
+        low, high = (np.clip(other.x + it, fit.low, fit.high) for it in (-own, own))
+        below = np.where(left > 0.0, np.maximum(below, best.x - low), below)
+        above = np.where(left > 0.0, np.maximum(above, high - best.x), above)
+    return below, above
 
 
 def _left(residual: _Floats, jacobian: _Floats) -> float:

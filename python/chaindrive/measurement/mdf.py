@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from chaindrive.extras import extra
-from chaindrive.measurement.raw import RawChannel, RawRecord
+from chaindrive.measurement.raw import RawChannel, RawRecord, numbered
 
 __all__ = ["read"]
 
@@ -25,9 +26,6 @@ def read(path: Path) -> RawRecord:
                 continue
             time = np.asarray(signal.timestamps, dtype=np.float64)
             channels.append(RawChannel(name, signal.unit or None, values.astype(np.float64), time))
-    names = [it.name for it in channels]
-    for number, channel in enumerate(channels):
-        if names.count(channel.name) > 1:
-            other = f"{channel.name} {names[:number].count(channel.name) + 1}"
-            channels[number] = RawChannel(other, channel.unit, channel.values, channel.time)
-    return RawRecord(channels, notes)
+    names = numbered([it.name for it in channels])
+    alone = [replace(it, name=name) for it, name in zip(channels, names, strict=True)]
+    return RawRecord(alone, notes)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import Any, NamedTuple
 
@@ -17,9 +17,10 @@ from chaindrive.assumptions.trials import Trials
 from chaindrive.drive import Drive, load
 from chaindrive.errors import MeasurementError, MeasurementWarning, SceneError, warn
 from chaindrive.extras import extra
+from chaindrive.measurement.amount import check_share, is_number
 from chaindrive.measurement.evaluations import RunStore
 from chaindrive.measurement.free import open_to, value_at
-from chaindrive.measurement.sensitivities import CLEAR, settings_for
+from chaindrive.measurement.sensitivities import CLEAR, settings_for, starts
 from chaindrive.measurement.telling import as_text, number, texts
 from chaindrive.progress import told
 from chaindrive.settings import Quantity
@@ -84,12 +85,14 @@ def predict(
     drive
         Another drive with the fitted parameters in it; the calibrated one when absent.
     reach
-        Largest factor, up or down, between a value in `at` and in the fit [–] (assumed). Beyond it
-        the prediction is refused: a fit says little of what is far away.
+        Largest factor, up or down, between a number in `at`, within tables and lists too, and in
+        the fit [–] (assumed), at least 1. Beyond it the prediction is refused: a fit says little of
+        what is far away.
     telling
         Greatest half width over the value that is told as a prediction [–].
     phases
-        Phases of the chain at the start [pitches], a replicate each; at least 2.
+        Phases of the chain at the start [pitches], a replicate each; at least 2. A drive without
+        one, such as that of several chains, is refused.
     until, run_in
         As in `simulate`. The length of the run is that of the record that is foretold.
     level
@@ -114,8 +117,8 @@ def predict(
     ------
     MeasurementError
         The fit was refused, or misses the part of its record that was kept; an operating point is
-        out of reach, or is a fitted value itself; another drive lacks a fitted parameter. The
-        reason is in the message.
+        out of reach, or changes a fitted value, by whatever path; another drive lacks a fitted
+        parameter; the drive has no phase. The reason is in the message.
     SimulationError
         A variant within the errors of the fit cannot be simulated.
 
@@ -126,14 +129,14 @@ def predict(
         errors, or the numbers of the run contradict themselves.
     """
     scale, correlation, freedom, values = _fitted(calibrated)
+    level = float(calibrated.attrs["level"]) if level is None else level
+    _check(level, reach, telling, phases)
     changes = dict(at or {})
     base, words = _drive(calibrated, values, changes, drive, reach)
-    level = float(calibrated.attrs["level"]) if level is None else level
-    if not 0.0 < level < 1.0:
-        raise MeasurementError(f"level = {level}, must be in (0, 1)", "level")
-    if len(phases) < 2:
-        message = f"phases = {list(phases)}: one run tells no scatter"
-        raise MeasurementError(message, "phases", "at least two")
+    if not any(starts(base)):
+        message = "this drive has no route.phase to start from: one run tells no scatter"
+        hint = "of several chains sweep the phases of each, such as chains[0].route.phase"
+        raise MeasurementError(message, "phases", hint)
     given = {"until": until, "run_in": run_in}
     with told(progress, "predict") as tell:
         run = simulate(base, error=False, **given)  # type: ignore[arg-type]
@@ -207,6 +210,17 @@ def _fitted(calibrated: xr.Dataset) -> tuple[_Floats, _Floats, _Floats, dict[str
     return scale, covariance / np.outer(scale, scale), calibrated["freedom"].to_numpy()[own], values
 
 
+def _check(level: float, reach: float, telling: float, phases: Sequence[float]) -> None:
+    check_share(level, "level")
+    for name, value, least in (("reach", reach, 1.0), ("telling", telling, 0.0)):
+        if not (is_number(value) and value >= least):
+            message = f"{name} = {value!r}, must be a finite number, at least {least:g}"
+            raise MeasurementError(message, name)
+    if len(phases) < 2:
+        message = f"phases = {list(phases)}: one run tells no scatter"
+        raise MeasurementError(message, "phases", "at least two")
+
+
 def _drive(
     calibrated: xr.Dataset,
     values: Mapping[str, float],
@@ -215,46 +229,71 @@ def _drive(
     reach: float,
 ) -> tuple[Drive, str]:
     """Return the drive at its operating point, and how far that is from the record, in words."""
-    for path in changes:
-        if path in values:
-            message = f"at[{path!r}]: it is fitted, and a prediction takes what was found"
-            raise MeasurementError(message, path, "leave it out, or simulate without a fit")
     first = load(calibrated)
     try:
         base = first if other is None else open_to(other, values).replace(values)
         point = base.replace(changes) if changes else base
     except SceneError as error:
         raise MeasurementError(f"this drive cannot take it: {error}", "at") from error
-    here, there = (it.resolved().to_dict() for it in (first, point))
+    here, own, there = (it.resolved().to_dict() for it in (first, base, point))
+    for path in values:
+        # A path can be written in several ways, and be part of a table.
+        if value_at(there, path) != value_at(own, path):
+            message = f"at changes {path}: it is fitted, and a prediction takes what was found"
+            raise MeasurementError(message, path, "leave it out, or simulate without a fit")
     words = []
     for path in changes:
-        old, new = value_at(here, path), value_at(there, path)
-        if not (_is_number(old) and _is_number(new)):
-            if _is_other(old, new):
-                message = f"at[{path!r}]: {new!r} is another model than the one that was fitted"
-                raise MeasurementError(message, path, "fit a record of that")
-            words.append(f"{path} is another")
-            continue
-        ratio = new / old if old else math.inf
-        times = max(abs(ratio), 1.0 / abs(ratio) if ratio else math.inf)
-        if ratio < 0.0 or times > reach:
-            message = (
-                f"at[{path!r}]: {new:.6g} is out of reach of a fit at {old:.6g}: "
-                f"it tells of what is up to {reach:g} times as much or as little"
-            )
-            raise MeasurementError(message, path, "fit a record of there, or raise `reach`")
-        words.append(f"{path} is {ratio:.3g} times that of the record")
+        for place, old, new in _apart(value_at(here, path), value_at(there, path), path):
+            if not (is_number(old) and is_number(new)):
+                if _is_other(old, new):
+                    message = f"at[{path!r}]: {new!r} is another model than the one that was fitted"
+                    raise MeasurementError(message, place, "fit a record of that")
+                words.append(f"{place} is another")
+                continue
+            ratio = new / old if old else math.inf
+            times = max(abs(ratio), 1.0 / abs(ratio) if ratio else math.inf)
+            if ratio < 0.0 or times > reach:
+                message = (
+                    f"at[{path!r}]: {place} = {new:.6g} is out of reach of a fit at {old:.6g}: "
+                    f"it tells of what is up to {reach:g} times as much or as little"
+                )
+                raise MeasurementError(message, place, "fit a record of there, or raise `reach`")
+            words.append(f"{place} is {ratio:.3g} times that of the record")
     return point, "; ".join(words) or "the operating point of the record"
+
+
+def _apart(old: Any, new: Any, path: str) -> Iterator[tuple[str, Any, Any]]:
+    """Find what differs between two values of a scene, each with its path, down to its numbers.
+
+    Of lists of numbers, such as the speeds of a measured motion, those of the greatest size count.
+    """
+    if old == new:
+        return
+    if isinstance(old, Mapping) and isinstance(new, Mapping) and not _is_other(old, new):
+        for key in {**old, **new}:
+            yield from _apart(old.get(key), new.get(key), f"{path}.{key}")
+    elif _are_numbers(old) and _are_numbers(new):
+        yield path, max(old, key=abs), max(new, key=abs)
+    elif isinstance(old, list) and isinstance(new, list) and not _is_other(old, new):
+        for n, pair in enumerate(zip(old, new, strict=True)):
+            yield from _apart(*pair, f"{path}[{n}]")
+    else:
+        yield path, old, new
 
 
 def _is_other(old: Any, new: Any) -> bool:
     """Tell whether two values at a path are not of one kind."""
-    kinds = [it.get("kind") if isinstance(it, Mapping) else type(it) for it in (old, new)]
-    return kinds[0] != kinds[1]
+
+    def kind(it: Any) -> Any:
+        if isinstance(it, Mapping):
+            return it.get("kind")
+        return len(it) if isinstance(it, list) else type(it)
+
+    return bool(kind(old) != kind(new))
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+def _are_numbers(values: Any) -> bool:
+    return isinstance(values, list) and bool(values) and all(map(is_number, values))
 
 
 def _bands(

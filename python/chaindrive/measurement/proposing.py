@@ -143,6 +143,9 @@ def next_measurement(
     targets, slopes = _targets(parameters, settle)
     frequency = amount(rate, "Hz", "rate")
     seconds, lasting = amount(until, "s", "until"), amount(record, "s", "record")
+    for name, value in (("rate", frequency), ("until", seconds), ("record", lasting)):
+        if not 0.0 < value < np.inf:
+            raise MeasurementError(f"{name} = {value}, must be positive", name)
     seen: list[list[_Seen]] = []
     with told(progress, "next measurement") as tell:
         for done, changes in enumerate(points.values()):
@@ -189,7 +192,8 @@ def next_measurement(
 
 
 def _sensors(candidates: Any) -> dict[str, Sensor]:
-    given = candidates if isinstance(candidates, Mapping) else {str(it): it for it in candidates}
+    listed = [candidates] if isinstance(candidates, str) else candidates
+    given = listed if isinstance(listed, Mapping) else {str(it): it for it in listed}
     if not given:
         raise MeasurementError("no candidate is given", "candidates", "quantities of the drive")
     found = {}
@@ -267,7 +271,12 @@ def _at(
 ) -> list[_Seen]:
     """Return what every candidate sees at an operating point."""
     rate, until, shaft = how
-    quantities = {name: quantity_of(str(it.quantity)) for name, it in sensors.items()}
+    # Unit, sign and scale are of a file, and here is none; nor is a name that one could have.
+    plain = {
+        f"candidate {n}": replace(it, unit=None, sign=1, scale=1.0, offset=0.0)
+        for n, it in enumerate(sensors.values())
+    }
+    quantities = {name: quantity_of(str(it.quantity)) for name, it in plain.items()}
     needs = dict.fromkeys(need for it in quantities.values() for need in it.needs)
     record: Any = [*needs, "sprocket_angle"]
     run = simulate(drive, until=until, every=1.0 / (_DENSER * rate), record=record)
@@ -280,17 +289,17 @@ def _at(
         turns = {str(shaft): f"{float(angle[-1] - angle[0]) / seconds!r} rad/s"}
     table = xr.Dataset(
         {
-            name: ("time", it.of(run, sensors[name])[::_DENSER], {"units": it.unit})
+            name: ("time", it.of(run, plain[name])[::_DENSER], {"units": it.unit})
             for name, it in quantities.items()
         },
         coords={"time": ("time", run["time"].to_numpy()[::_DENSER], {"units": "s"})},
     )
-    data = measured(table, channels=dict(sensors), turns=turns)
+    data = measured(table, channels=plain, turns=turns)
     teeth = float(wheels[str(shaft)].teeth) if shaft in wheels else None
-    own = {name: sensor_of(data, name) for name in sensors}
+    own = {name: sensor_of(data, name) for name in plain}
     reads = readings(data, run, quantities, own, shaft if turns else None, teeth)
     moved = sensitivities(drive, run, reads, parameters, tell)
-    return [_seen(name, reads, run, moved, np.diag(prior)) for name in sensors]
+    return [_seen(name, reads, run, moved, np.diag(prior)) for name in plain]
 
 
 def _seen(

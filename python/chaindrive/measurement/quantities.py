@@ -179,7 +179,10 @@ def guessed(name: str, unit: str, run: xr.Dataset) -> MeasuredQuantity | None:
         if not re.search(words, name, re.IGNORECASE) or (needed and unit != needed):
             continue
         chosen = MeasuredQuantity(quantity, None)
-        dims = [dim for need in chosen.needs if need in run for dim in run[need].dims]
+        if not all(need in run for need in chosen.needs):
+            # Its places are not known.
+            continue
+        dims = [dim for need in chosen.needs for dim in run[need].dims]
         others = list(dict.fromkeys(str(dim) for dim in dims if dim != "time"))
         if not others or others == ["link"]:
             found.append(chosen)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
+from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
 
 from chaindrive.errors import MeasurementError
 
-__all__ = ["RawChannel", "RawRecord", "numbers"]
+__all__ = ["RawChannel", "RawRecord", "numbered", "numbers"]
 
 _Floats = NDArray[np.float64]
 
@@ -53,6 +55,17 @@ class RawRecord:
         known = ", ".join(repr(it.name) for it in self.channels[:24])
         how = "several channels are" if near else "no channel is"
         raise MeasurementError(f"{how} named {name!r}: there are {known}", name)
+
+
+def numbered(names: Sequence[str], taken: Collection[str] = ()) -> list[str]:
+    """Return names of which no two are alike: with a number behind those that are, or are taken."""
+    found: list[str] = []
+    for name in names:
+        if name in taken or names.count(name) > 1:
+            others = {*names, *taken, *found}
+            name = next(it for n in count(1) if (it := f"{name} {n}") not in others)
+        found.append(name)
+    return found
 
 
 def numbers(values: object) -> tuple[_Floats | None, int]:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from os import PathLike
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -16,22 +17,31 @@ from chaindrive.labelled import indexed, labelled
 from chaindrive.measurement.amount import amount
 from chaindrive.measurement.faults import faults_of, too_slow
 from chaindrive.measurement.formats import read_raw
-from chaindrive.measurement.raw import RawChannel, RawRecord
+from chaindrive.measurement.raw import RawChannel, RawRecord, numbered
 from chaindrive.measurement.sensor import Sensor
-from chaindrive.measurement.time_base import Finding, intervals, sampling_rate, sorted_in_time
-from chaindrive.measurement.turning import Speed, Turning, angle_by, turning_by
+from chaindrive.measurement.time_base import (
+    Finding,
+    intervals,
+    rises,
+    sampling_rate,
+    sorted_in_time,
+)
+from chaindrive.measurement.turning import Turning, angle_by, source_of, turning_by
 from chaindrive.measurement.units import unit_of
 from chaindrive.settings import Quantity
 
 __all__ = ["FORMAT", "measured"]
 
 _Floats = NDArray[np.float64]
+#: Name of a base, and the samples of a channel that are taken.
+_Samples: TypeAlias = tuple[str, NDArray[np.int64]]
 
 #: Attribute ``format`` of a measurement.
 FORMAT = "chaindrive measurement"
+#: What a time is called, the likelier names first.
 _TIMES = (
-    *("time", "t", "zeit", "temps", "timestamp", "timestamps", "date", "datetime", "clock"),
-    *("sec", "secs", "second", "seconds"),
+    *("time", "t", "zeit", "temps", "sec", "secs", "second", "seconds", "clock"),
+    *("timestamp", "timestamps", "datetime", "date"),
 )
 #: Findings that are no faults.
 _HARMLESS = ("text",)
@@ -70,13 +80,15 @@ def measured(
         How each shaft turns, by the name of the shaft or sprocket: a stated speed such as
         ``"300 rpm"``, the name of a channel of speed, ``{"encoder": channel, "counts": 1024}``,
         ``{"tacho": channel, "pulses": 60}``, or the classes of `chaindrive.measurement`. The angle
-        is positive as the readings are.
+        is positive as the readings are, by the unit, sign, scale and offset of its channel.
     time
-        Name of the channel that is the time, in a file where it is not called so.
+        Name of the channel that is the time, in a file where it is not called so. Other times
+        beside it are left out.
     rate
         Samples a second [Hz], where the file has no time, or a wrong one.
     start, until
-        Part of the record to keep, in seconds after its first sample.
+        Part of the record to keep, in seconds after its first sample. Angles go on from what turned
+        before.
     orders
         Highest order of interest by shaft: channels that are sampled too slowly for it are told.
     encoding, decimal, separator
@@ -127,11 +139,20 @@ def measured(
     }
     raw, source = read_raw(path, options)
     findings = [Finding(*note) for note in raw.notes]
-    timed = _timed(raw, time, None if rate is None else amount(rate, "Hz", "rate"))
-    sensors = _sensors(raw, channels)
+    timed = _timed(raw, time, None if rate is None else amount(rate, "Hz", "rate"), findings)
+    # The time is no channel.
+    sensors = {name: it for name, it in _sensors(raw, channels).items() if name in timed}
     bounds = _bounds(start, until)
-    how = {name: turning_by(it, name) for name, it in (turns or {}).items()}
-    bases, of = _bases(timed, sensors, bounds, findings)
+    how = {name: turning_by(it, name, timed) for name, it in (turns or {}).items()}
+    sources = [it for it in map(source_of, how.values()) if it is not None]
+    # All bases have the zero of the earliest sample.
+    first = min(
+        float(np.min(times, initial=np.inf, where=np.isfinite(times)))
+        for _, times in timed.values()
+    )
+    rising = _rising(timed, sensors, sources, findings)
+    bases, of = _bases(timed, {name: rising[name] for name in sensors}, first, bounds, findings)
+    keys = _keys(sensors, bases, findings)
     variables: dict[str, Any] = {}
     for name, sensor in sensors.items():
         channel = raw.named(name)
@@ -141,12 +162,20 @@ def measured(
         faults = faults_of(channel.values[kept], name, channel.full_scale)
         findings += [it for it in faults if not (is_told and "no value" in it.text)]
         about["sampling_rate"] = sampling_rate(bases[base])
-        key = _core.one_line(name).replace("/", " ")
-        variables[key] = labelled((base,), values, about)
+        shafts = [shaft for shaft, it in how.items() if source_of(it) == name]
+        if shafts:
+            about["turns"] = shafts[-1]
+        variables[keys[name]] = labelled((base,), values, about)
         if about["units"] and not unit_of(about["units"]).is_known:
             text = f"its unit {about['units']!r} is none of a drive; give `scale` and `unit`"
             findings.append(Finding("unit", name, text))
-    _angles(variables, bases, how, timed, findings)
+    clocked = {}
+    for name in sources:
+        channel, times = timed[name]
+        own = rising[name][1]
+        clocked[name] = _sensed(channel, sensors.get(name, Sensor()), own), times[own] - first
+    if how:
+        variables |= _angles(how, clocked, bases, bounds[0], findings)
     findings += _slow(variables, bases, orders or {}, list(how))
     dimensions: dict[str, NDArray[Any]] = dict(bases)
     if how:
@@ -172,29 +201,27 @@ def measured(
 
 
 def _timed(
-    raw: RawRecord, time: str | None, rate: float | None
+    raw: RawRecord, time: str | None, rate: float | None, findings: list[Finding]
 ) -> dict[str, tuple[RawChannel, _Floats]]:
     """Return every channel with its times [s]; the time itself is none of them."""
-    if rate is not None:
-        if not rate > 0.0:
-            raise MeasurementError(f"rate = {rate}, must be positive [Hz]", "rate")
-        return {it.name: (it, np.arange(it.values.size) / rate) for it in raw.channels}
-    clocks: dict[int, tuple[str, _Floats]] = {}
-    if time is not None:
-        clock = raw.named(time)
-        clocks[clock.values.size] = (clock.name, _seconds(clock))
-    else:
-        for channel in raw.channels:
-            last = channel.name.rpartition("/")[2].casefold()
-            if channel.time is None and (last in _TIMES or last.partition(" ")[0] in _TIMES):
-                clocks.setdefault(channel.values.size, (channel.name, _seconds(channel)))
+    if rate is not None and not rate > 0.0:
+        raise MeasurementError(f"rate = {rate}, must be positive [Hz]", "rate")
+    clocks = {} if rate is not None else _clocks(raw, time)
+    seconds = {size: _seconds(clock) for size, clock in clocks.items()}
     found = {}
     for channel in raw.channels:
-        name, times = clocks.get(channel.values.size, ("", None))
-        if time is None and channel.time is not None:
-            times = channel.time
-        if channel.name == name:
+        size = channel.values.size
+        if channel is clocks.get(size):
             continue
+        if _may_be_time(channel, _called(channel)):
+            text = "is a time that is not taken, and is left out"
+            findings.append(Finding("text", channel.name, text))
+            continue
+        times = seconds.get(size)
+        if rate is not None:
+            times = np.arange(size) / rate
+        elif time is None and channel.time is not None:
+            times = channel.time
         if times is None:
             names = ", ".join(repr(it.name) for it in raw.channels[:12])
             raise MeasurementError(
@@ -212,6 +239,43 @@ def _timed(
     return found
 
 
+def _called(channel: RawChannel) -> str:
+    """Return the name of a channel without its groups, in small letters."""
+    return channel.name.rpartition("/")[2].casefold()
+
+
+def _is_in_seconds(channel: RawChannel) -> bool:
+    return not channel.unit or unit_of(channel.unit).si == "s"
+
+
+def _may_be_time(channel: RawChannel, word: str) -> bool:
+    """Tell whether a channel that is called by a word may be a time.
+
+    A T without a unit may be a temperature or a torque: a time rises.
+    """
+    if channel.time is not None or word not in _TIMES or not _is_in_seconds(channel):
+        return False
+    return word != "t" or bool(channel.unit) or rises(channel.values)
+
+
+def _clocks(raw: RawRecord, time: str | None) -> dict[int, RawChannel]:
+    """Return the channel that is the time, by the number of its samples."""
+    if time is not None:
+        clock = raw.named(time)
+        return {clock.values.size: clock}
+    ranked = []
+    for channel in raw.channels:
+        called = _called(channel)
+        word = called.partition(" ")[0]
+        # Where nothing else is the time, what is called so and is in metres is told to be none.
+        is_odd = channel.time is None and called == "time" and not _is_in_seconds(channel)
+        if is_odd or _may_be_time(channel, word):
+            rank = (is_odd, called != "time", not channel.unit, _TIMES.index(word))
+            ranked.append((rank, channel))
+    ranked.sort(key=lambda it: it[0])
+    return {channel.values.size: channel for _, channel in reversed(ranked)}
+
+
 def _suggested(raw: RawRecord) -> str:
     """Return what to give for a time: the first channel that rises evenly, if there is one."""
     for it in raw.channels:
@@ -223,7 +287,7 @@ def _suggested(raw: RawRecord) -> str:
 
 def _seconds(clock: RawChannel) -> _Floats:
     unit = unit_of(clock.unit)
-    if clock.unit is not None and unit.si != "s":
+    if not _is_in_seconds(clock):
         message = f"{clock.name} is in {clock.unit}, which is no time"
         raise MeasurementError(message, clock.name, "give time='…', or rate='1 kHz'")
     return unit.factor * clock.values
@@ -249,57 +313,99 @@ def _bounds(start: Quantity | None, until: Quantity | None) -> tuple[float, floa
     return begin, float(end)
 
 
+def _rising(
+    timed: Mapping[str, tuple[RawChannel, _Floats]],
+    sensors: Mapping[str, Sensor],
+    sources: list[str],
+    findings: list[Finding],
+) -> dict[str, _Samples]:
+    """Return the base of every channel that is kept or turns a shaft, and its samples as they rise.
+
+    What turns a shaft, and is neither kept nor along what is, has a base of its own name.
+    """
+    of: dict[str, _Samples] = {}
+    seen: list[tuple[_Floats, _Samples]] = []
+    for name in dict.fromkeys([*sensors, *sources]):
+        times = timed[name][1]
+        known = next((it for at, it in seen if at is times or _same(at, times)), None)
+        if known is None:
+            if name in sensors:
+                base, least = f"time_{len(seen) + 1}" if seen else "time", 8
+            else:
+                # A speed that changes slowly is written down now and then.
+                base, least = name, 2
+            kept, found = sorted_in_time(times, base, least)
+            findings += found
+            known = (base, kept)
+            seen.append((times, known))
+        of[name] = known
+    return of
+
+
 def _bases(
     timed: Mapping[str, tuple[RawChannel, _Floats]],
-    sensors: dict[str, Sensor],
+    rising: Mapping[str, _Samples],
+    first: float,
     bounds: tuple[float, float],
     findings: list[Finding],
-) -> tuple[dict[str, _Floats], dict[str, tuple[str, NDArray[np.int64]]]]:
-    """Return times by base, and the base of every channel with the samples that it keeps.
-
-    All bases have the zero of the earliest one. The time is no channel: it leaves the sensors.
-    """
-    for name in [it for it in sensors if it not in timed]:
-        del sensors[name]
-    first = min(float(np.nanmin(times)) for _, times in timed.values())
+) -> tuple[dict[str, _Floats], dict[str, _Samples]]:
+    """Return times by base, and the base of every channel with the samples within the bounds."""
     bases: dict[str, _Floats] = {}
-    of: dict[str, tuple[str, NDArray[np.int64]]] = {}
-    seen: list[tuple[_Floats, str, NDArray[np.int64]]] = []
-    for name in sensors:
-        times = timed[name][1]
-        known = next((it for it in seen if it[0] is times or _same(it[0], times)), None)
-        if known is None:
-            base = "time" if not bases else f"time_{len(bases) + 1}"
-            kept, found = sorted_in_time(times, base)
-            after = times[kept] - first
-            kept = kept[(after >= bounds[0]) & (after <= bounds[1])]
-            if kept.size < 8:
-                last = float(np.nanmax(times)) - first
-                message = f"start and until leave {kept.size} samples of {last:.6g} s"
-                raise MeasurementError(message, "until", "at least 8")
-            bases[base] = times[kept] - first - bounds[0]
-            findings += found + intervals(bases[base], base)
-            known = (times, base, kept)
-            seen.append(known)
-        of[name] = known[1:]
-    return bases, of
+    kept: dict[str, NDArray[np.int64]] = {}
+    for name, (base, samples) in rising.items():
+        if base in bases:
+            continue
+        after = timed[name][1][samples] - first
+        inside = (after >= bounds[0]) & (after <= bounds[1])
+        kept[base] = samples[inside]
+        if kept[base].size < 8:
+            message = f"start and until leave {kept[base].size} samples of {after[-1]:.6g} s"
+            raise MeasurementError(message, "until", "at least 8")
+        bases[base] = after[inside] - bounds[0]
+        findings += intervals(bases[base], base)
+    return bases, {name: (base, kept[base]) for name, (base, _) in rising.items()}
+
+
+def _angle(base: str) -> str:
+    """Return what the angles of shafts are called along a base."""
+    return "sprocket_angle" + base.removeprefix("time")
+
+
+def _keys(names: Iterable[str], bases: Iterable[str], findings: list[Finding]) -> dict[str, str]:
+    """Return what every channel is called in the dataset, where some names are taken.
+
+    What has a slash in its name cannot be saved as NetCDF.
+    """
+    plain = {name: _core.one_line(name).replace("/", " ") for name in names}
+    taken = {"sprocket", *bases, *map(_angle, bases)}
+    keys = dict(zip(plain, numbered(list(plain.values()), taken), strict=True))
+    for name, key in keys.items():
+        if key != plain[name]:
+            text = f"is called {key!r} here, since {plain[name]!r} is taken"
+            findings.append(Finding("name", name, text))
+    return keys
 
 
 def _same(one: _Floats, other: _Floats) -> bool:
     return one.size == other.size and bool(np.array_equal(one, other, equal_nan=True))
 
 
+def _sensed(channel: RawChannel, sensor: Sensor, kept: NDArray[np.int64]) -> RawChannel:
+    """Return a channel as its sensor says it: x = sign · scale · (r − offset), in its unit."""
+    values = sensor.sign * sensor.scale * (channel.values[kept] - sensor.offset)
+    unit = channel.unit if sensor.unit is None else sensor.unit
+    return replace(channel, values=values, unit=unit)
+
+
 def _in_si(
     channel: RawChannel, sensor: Sensor, kept: NDArray[np.int64]
 ) -> tuple[_Floats, dict[str, Any]]:
     """Return readings in SI, and what is to be known about them."""
-    stated = sensor.unit if sensor.unit is not None else channel.unit
-    unit = unit_of(stated)
+    sensed = _sensed(channel, sensor, kept)
+    unit = unit_of(sensed.unit)
     if sensor.unit is not None and not unit.is_known:
         # The very complaint of the parser, with what it would take.
         _core.unit(sensor.unit)
-    # x = sign · scale · (r − offset), in the unit of the sensor
-    values = sensor.sign * sensor.scale * (channel.values[kept] - sensor.offset)
     about: dict[str, Any] = {
         "units": unit.si,
         "long_name": channel.name,
@@ -309,34 +415,27 @@ def _in_si(
     }
     if sensor.quantity is not None:
         about["quantity"] = sensor.quantity
-    return unit.factor * values + unit.zero, about
+    return unit.factor * sensed.values + unit.zero, about
 
 
 def _angles(
-    variables: dict[str, Any],
-    bases: Mapping[str, _Floats],
     how: Mapping[str, Turning],
-    timed: Mapping[str, tuple[RawChannel, _Floats]],
+    clocked: Mapping[str, tuple[RawChannel, _Floats]],
+    bases: Mapping[str, _Floats],
+    begin: float,
     findings: list[Finding],
-) -> None:
-    """Add the angles of shafts, along every time base."""
-    if not how:
-        return
-    first = min(float(np.nanmin(times)) for _, times in timed.values())
-    clocked = {name: (it, times - first) for name, (it, times) in timed.items()}
-    for name, turning in how.items():
-        source = turning.speed if isinstance(turning, Speed) else turning.channel
-        if source in variables:
-            variables[str(source)].attrs["turns"] = name
+) -> dict[str, xr.Variable]:
+    """Return the angles of shafts along every time base, with what turned before it begins."""
+    variables = {}
     for base, times in bases.items():
         columns = []
         for name, turning in how.items():
-            angle, found = angle_by(turning, clocked, times, name)
+            angle, found = angle_by(turning, clocked, times + begin, name)
             columns.append(angle)
             findings += [it for it in found if it not in findings]
         about = {"units": "rad", "long_name": "angle of shaft"}
-        key = "sprocket_angle" + base.removeprefix("time")
-        variables[key] = labelled((base, "sprocket"), np.stack(columns, axis=1), about)
+        variables[_angle(base)] = labelled((base, "sprocket"), np.stack(columns, axis=1), about)
+    return variables
 
 
 def _slow(
@@ -347,7 +446,7 @@ def _slow(
 ) -> list[Finding]:
     found = []
     for base, times in bases.items():
-        angles = variables.get("sprocket_angle" + base.removeprefix("time"))
+        angles = variables.get(_angle(base))
         for shaft, order in orders.items():
             if angles is None or shaft not in shafts:
                 message = f"orders.{shaft}: its speed is not known"
@@ -364,7 +463,7 @@ def _summary(dataset: xr.Dataset, findings: list[Finding]) -> str:
     lines = [f"{dataset.attrs['measured_from']}:"]
     width = max((len(str(name)) for name in dataset.data_vars), default=0)
     for name, variable in dataset.data_vars.items():
-        if not str(name).startswith("sprocket_angle"):
+        if "sensor" in variable.attrs:
             mean, unit = float(variable.mean()), variable.attrs["units"] or "no unit"
             rate, count = variable.attrs["sampling_rate"], variable.size
             of = variable.attrs.get("quantity", "")

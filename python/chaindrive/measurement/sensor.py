@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from chaindrive.errors import MeasurementError
 from chaindrive.extras import extra
-from chaindrive.measurement.amount import amount
+from chaindrive.measurement.amount import amount, is_number
+from chaindrive.measurement.units import unit_of
 
 __all__ = ["NUISANCES", "Sensor"]
 
@@ -28,8 +29,12 @@ NUISANCES: Mapping[str, str] = {
     "integration": "s",
 }
 
-# Fields that are quantities with a unit of their own.
-_UNITS = {"corner": "Hz", "delay": "s", "integration": "s", "bias_uncertainty": None, "bias": None}
+# Fields that are numbers, with their units of SI; None: that of the quantity.
+_UNITS: Mapping[str, str | None] = {
+    **dict.fromkeys(("scale", "offset", "gain_uncertainty", "gain", "drift"), "1"),
+    **dict.fromkeys(("bias_uncertainty", "bias"), None),
+    **{"corner": "Hz", "delay": "s", "integration": "s"},
+}
 
 
 @dataclass(frozen=True)
@@ -93,11 +98,19 @@ class Sensor:
     def __post_init__(self) -> None:
         for name, unit in _UNITS.items():
             value = getattr(self, name)
-            if value is not None:
-                object.__setattr__(self, name, amount(value, unit, name))
+            if name == "corner" and value is None:
+                continue
+            if unit is None and not is_number(value):
+                unit = self._unit_of_quantity()
+            # A zero that is 2 °C off is so many kelvin off.
+            found = amount(value, unit, name, is_difference=True)
+            if not is_number(found):
+                raise MeasurementError(f"sensor: {name} = {found}, must be finite", name)
+            object.__setattr__(self, name, found)
         bounds = [
             ("sign", self.sign in (-1, 1), "1 or −1"),
             ("scale", self.scale > 0.0, "positive; `sign` turns it around"),
+            ("gain", self.gain != 0.0, "other than 0, at which a sensor reads nothing"),
             ("gain_uncertainty", 0.0 <= self.gain_uncertainty < 1.0, "in [0, 1)"),
             ("bias_uncertainty", self.bias_uncertainty >= 0.0, "0 or more"),
             ("order", self.order in range(1, 13), "1 to 12"),
@@ -108,6 +121,19 @@ class Sensor:
             if not is_right:
                 message = f"sensor: {name} = {getattr(self, name)!r}, must be {allowed}"
                 raise MeasurementError(message, name)
+
+    def _unit_of_quantity(self) -> str | None:
+        """Return the unit of SI that readings are in; None where it is not known."""
+        if self.unit is not None:
+            return unit_of(self.unit).si
+        if self.quantity is None:
+            return None
+        # Quantities know sensors.
+        from chaindrive.measurement.quantities import quantity_of
+
+        unit = quantity_of(self.quantity).unit
+        # Of a tensioner it is that of its kind, `m or rad`.
+        return None if " or " in unit else unit or None
 
     @classmethod
     def of(cls, given: Sensor | str | Mapping[str, Any], channel: str = "") -> Sensor:
@@ -122,6 +148,10 @@ class Sensor:
             return given
         if isinstance(given, str):
             return cls(quantity=given)
+        if not isinstance(given, Mapping):
+            message = f"channels.{channel} = {given!r} is no sensor"
+            hint = "give the text of a quantity, or a table of fields; or leave the channel out"
+            raise MeasurementError(message, channel, hint)
         known = {it.name for it in fields(cls)}
         strange = [name for name in given if name not in known]
         if strange:
@@ -148,7 +178,7 @@ class Sensor:
         """Return the sensor of such a text."""
         return cls.of(json.loads(text))
 
-    def observe(self, values: _Floats, time: _Floats) -> _Floats:
+    def observe(self, values: _Floats, time: _Floats, later: float = 0.0) -> _Floats:
         """Return what the sensor reads of a quantity, at the times at which it is known.
 
         Parameters
@@ -157,11 +187,14 @@ class Sensor:
             The quantity [SI].
         time : (samples,)
             Equally spaced times [s], as densely as the motion asks for.
+        later
+            Time from the zero of the drift to the first value [s].
 
         Returns
         -------
         (samples,)
-            Readings [SI]; at the beginning the low-pass is at rest on the first value.
+            Readings [SI]. Before the first value the quantity is taken as the mean over the time
+            that the low-pass, or the integration, looks back: what is faster leaves no start-up.
 
         Raises
         ------
@@ -180,18 +213,19 @@ class Sensor:
                 )
             scipy = extra("scipy.signal", "models of sensors")
             sections = scipy.butter(self.order, self.corner, fs=1.0 / interval, output="sos")
-            at_rest = scipy.sosfilt_zi(sections) * found[0]
+            at_rest = scipy.sosfilt_zi(sections) * _before(found, 1.0 / (self.corner * interval))
             found, _ = scipy.sosfilt(sections, found, zi=at_rest)
         if self.integration > 0.0:
             # (1/T) ∫ x dt′ of straight lines between samples, exactly.
             steps = 0.5 * (found[1:] + found[:-1]) * np.diff(time)
             area = np.concatenate([[0.0], np.cumsum(steps)])
             begin = time - self.integration
-            early = np.minimum(begin - time[0], 0.0) * found[0]
+            first = _before(found, self.integration / interval)
+            early = np.minimum(begin - time[0], 0.0) * first
             found = (area - _area(time, found, area, begin) - early) / self.integration
         if self.delay != 0.0:
             found = np.interp(time - self.delay, time, found)
-        read: _Floats = self.gain * found + self.bias + self.drift * (time - time[0])
+        read: _Floats = self.gain * found + self.bias + self.drift * (later + time - time[0])
         return read
 
     def uncertainty(self, value: float, *, is_mean: bool) -> float:
@@ -206,6 +240,11 @@ class Sensor:
         """
         bias = self.bias_uncertainty if is_mean else 0.0
         return float(np.hypot(self.gain_uncertainty * value, bias))
+
+
+def _before(values: _Floats, samples: float) -> float:
+    """Return what a quantity was before its first value: its mean over so many samples."""
+    return float(values[: max(1, round(samples))].mean())
 
 
 def _area(time: _Floats, values: _Floats, area: _Floats, at: _Floats) -> _Floats:

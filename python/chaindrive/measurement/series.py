@@ -110,7 +110,7 @@ def simulated_series(
     run: xr.Dataset,
     quantity: MeasuredQuantity,
     sensor: Sensor,
-    rate: float,
+    beside: Series,
     shaft: str | None,
     late: float = 0.0,
 ) -> Series:
@@ -122,8 +122,9 @@ def simulated_series(
         The run, sampled as densely as its motion asks for.
     quantity, sensor
         What is read, and how.
-    rate
-        Samples a second of the measurement [Hz]; not more than the run has are taken.
+    beside
+        The measurement: not more samples a second than the run has are taken, and a zero that
+        drifts is on the average where it is there.
     shaft
         The shaft whose angle is wanted.
     late
@@ -132,11 +133,13 @@ def simulated_series(
     time = run["time"].to_numpy()
     # The last sample stands where the run ended, up to a step after its place.
     even, values = longest_even(time[:-1], quantity.of(run, sensor)[:-1])
-    read = sensor.observe(values, even)
+    # A record may be longer than the run, and begin after the sensor was set to zero.
+    later = float(np.mean(beside.time)) - float(np.mean(even - even[0]))
+    read = sensor.observe(values, even, later)
     own = (even.size - 1) / float(even[-1] - even[0])
     # Samples of a rig are taken, not averaged: what is above half their rate folds down, and a line
     # between two of them would cut the peaks of impacts.
-    denser = max(1, round(own / rate))
+    denser = max(1, round(own / beside.rate))
     among = slice(int(late * denser), None, denser)
     sampled, readings = even[among], read[among]
     angle = None

@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from chaindrive.errors import MeasurementError
-from chaindrive.measurement.raw import RawChannel, RawRecord, numbers
+from chaindrive.measurement.raw import RawChannel, RawRecord, numbered, numbers
 from chaindrive.measurement.units import named_unit, unit_of
 
 __all__ = ["read"]
@@ -68,6 +68,7 @@ def read(
     for number, (name, unit) in enumerate(zip(names, units, strict=True)):
         column = table[number]
         if column.isna().all():
+            notes.append(("text", name, "holds nothing, and is left out"))
             continue
         values, wrong = numbers(column.to_numpy())
         if values is None:
@@ -187,10 +188,7 @@ def _headings(
         name, unit = named_unit(cell)
         names.append(name or f"column {number + 1}")
         units = [*units[:number], unit if unit is not None else units[number], *units[number + 1 :]]
-    for number, name in enumerate(names):
-        if names.count(name) > 1:
-            names[number] = f"{name} {names[:number].count(name) + 1}"
-    return names, units
+    return numbered(names), units
 
 
 def _are_units(cells: list[str]) -> bool:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from chaindrive.errors import MeasurementError
 
-__all__ = ["Finding", "longest_even", "sampling_rate", "sorted_in_time"]
+__all__ = ["Finding", "intervals", "longest_even", "rises", "sampling_rate", "sorted_in_time"]
 
 _Floats = NDArray[np.float64]
 
@@ -36,8 +36,19 @@ class Finding(NamedTuple):
         return f"{self.channel}: {self.text}" if self.channel else self.text
 
 
-def sorted_in_time(time: _Floats, name: str) -> tuple[NDArray[np.int64], list[Finding]]:
+def sorted_in_time(
+    time: _Floats, name: str, least: int = 8
+) -> tuple[NDArray[np.int64], list[Finding]]:
     """Return which samples to take, in their order, and what was found.
+
+    Parameters
+    ----------
+    time
+        Times of the samples [s].
+    name
+        What they belong to, for messages.
+    least
+        How many samples are needed.
 
     Raises
     ------
@@ -52,8 +63,9 @@ def sorted_in_time(time: _Floats, name: str) -> tuple[NDArray[np.int64], list[Fi
                 "dropout", name, f"{len(time) - len(good)} samples have no time, and are left out"
             )
         )
-    if len(good) < 8:
-        raise MeasurementError(f"{name}: {len(good)} samples are too few", name, "at least 8")
+    if len(good) < least:
+        message = f"{name}: {len(good)} samples are too few"
+        raise MeasurementError(message, name, f"at least {least}")
     steps = np.diff(time[good])
     back = int(np.count_nonzero(steps < 0.0))
     if back:
@@ -89,6 +101,13 @@ def sorted_in_time(time: _Floats, name: str) -> tuple[NDArray[np.int64], list[Fi
         found.append(Finding("duplicate", name, text))
         good = good[~twice]
     return good, found
+
+
+def rises(values: _Floats) -> bool:
+    """Tell whether values may be times: they go on, and back by mistake at most."""
+    steps = np.diff(values[np.isfinite(values)])
+    back = int(np.count_nonzero(steps < 0.0))
+    return bool(steps.sum() > 0.0 and back <= max(1.0, _BACK * len(steps)))
 
 
 def intervals(time: _Floats, name: str) -> list[Finding]:

@@ -42,23 +42,16 @@ def validated(fit: Fit, best: Optimum, worth: Worth, level: float) -> Kept | Non
     if not any(it.kept for it in fit.experiments):
         return None
     errors = joined([it.errors(it.run, kept=True) for it in fit.experiments])
-    x = {it.path: float(v) for it, v in zip(fit.parameters, best.x, strict=True)}
-    parts = []
-    for it in fit.experiments:
-        (run,) = it.evaluations.runs([it.row(x)])
-        assert run is not None
-        parts.append(it.simulated(run, x, kept=True))
-    simulated = np.concatenate(parts)
+    (simulated,) = fit.features([best.x], kept=True)
+    assert simulated is not None
     own = np.diag(errors.covariance)
     known = np.isfinite(own) & (own > 0.0) & np.isfinite(errors.values) & np.isfinite(simulated)
     if known.sum() == 0:
         nan = np.full(own.shape, np.nan)
         return Kept(errors.names, errors.values, simulated, nan, np.nan, "cannot tell")
-    covariance = errors.covariance.copy()
-    if len(errors.names) == len(fit.errors.names):
-        # What the parameters may be off moves all of it together.
-        jacobian, _ = fit.replicated(best.x)
-        covariance += jacobian @ worth.covariance @ jacobian.T
+    # What the parameters may be off moves all of it together.
+    jacobian, _ = fit.replicated(best.x, kept=True)
+    covariance = errors.covariance + jacobian @ worth.covariance @ jacobian.T
     among = np.ix_(known, known)
     root = rooted(covariance[among])
     residual = np.asarray(np.linalg.solve(root, (simulated - errors.values)[known]), np.float64)
