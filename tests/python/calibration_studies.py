@@ -35,8 +35,8 @@ TABLES = {
     # Anew, after runs along a combination had come to tell whether it is identified.
     "refusal_level.csv": (20261138, 100),
     "refusal_pairs.csv": (20261144, 100),
-    # Anew, after deeper runs beside an optimum had come to count in the search for valleys.
-    "forty_again.csv": (20261145, 40),
+    # Anew, after valleys that explain a record alike had come to belong to intervals.
+    "forty_again.csv": (20261129, 40),
 }
 CHANNELS = ("tight", "slack", "torque")
 

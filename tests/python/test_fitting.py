@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from chaindrive.measurement.experiment import Errors
 from chaindrive.measurement.fitting import Fit, Optimum
 from chaindrive.measurement.free import FreeParameter
-from chaindrive.measurement.likelihood import Sides, reach_of
+from chaindrive.measurement.likelihood import alike, reach_of, sides_of
 from chaindrive.measurement.validating import validated
 from chaindrive.measurement.valleys import searched
 
@@ -129,19 +129,23 @@ def test_a_deeper_valley_is_found_from_runs_alone() -> None:
 
 
 def test_an_interval_has_the_other_valley_with_its_width() -> None:
-    """Of two valleys alike, with errors of 0.05, one at 0.5 is one error squared less deep."""
-    fit = Known(two_valleys, np.zeros(3), [0.5, 0.0])
-    slope = np.diag([20.0, 20.0])
-    optima = [
+    """Errors of 1/20, and at 0.5 a χ² of 1 more than at −0.5; what is at 0.9 is contradicted."""
+
+    def alike_valleys(x: Floats, design: int) -> Floats:
+        return np.array([20.0 * (abs(x[0]) - 0.5), 20.0 * x[1], float(x[0] > 0.0)])
+
+    fit = Known(alike_valleys, np.zeros(3), [0.5, 0.0])
+    slope = np.diag([20.0, 20.0, 0.0])[:, :2]
+    best, *others = (
         Optimum(np.array([at, 0.0]), 0.5 * chi2, slope)
-        for at, chi2 in ((-0.5, 1.0), (0.5, 2.0), (0.9, 9.0))
-    ]
-    width = np.full(2, 2.0 * 0.05)
-    straight = Sides(width, width, None)
-    how = (np.zeros(2), 0.05**2 * np.eye(2), np.full(2, 2.0))
-    below, above = reach_of(fit, optima, straight, *how)
-    np.testing.assert_allclose(below, width)
-    np.testing.assert_allclose(above, [1.0 + np.sqrt(2.0**2 - 1.0) * 0.05, 0.1])
+        for at, chi2 in ((-0.5, 0.0), (0.5, 1.0), (0.9, 9.0))
+    )
+    covariance, t = 0.05**2 * np.eye(2), np.full(2, 2.0)
+    first = (best, sides_of(fit, best, covariance, t))
+    valleys = [first, *alike(fit, others, first, t)]
+    below, above = reach_of(fit, valleys, np.zeros(2), covariance, t)
+    np.testing.assert_allclose(below, [0.1, 0.1], rtol=1e-6)
+    np.testing.assert_allclose(above, [1.0 + np.sqrt(2.0**2 - 1.0) * 0.05, 0.1], rtol=1e-6)
 
 
 def test_one_valley_stays_alone() -> None:

@@ -1,5 +1,7 @@
 """Columns of a measurement: which of them is the time, and no other one is lost."""
 
+import re
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +30,26 @@ COLUMNS: dict[str, tuple[dict[str, Any], dict[str, Any], list[str]]] = {
     "T": ({"T": OIL} | RIG, {}, ["T", "flange"]),
     "t": ({"T [degC]": OIL, "t": TIME}, {}, ["T"]),
     "a time in metres": ({"time [m]": OIL, "t [s]": TIME}, {}, ["time 1"]),
+    "a unit": (
+        {"Zeit": 1e3 * TIME, "a": OIL},
+        {"channels": {"Zeit": {"unit": "ms"}, "a": {}}},
+        ["a"],
+    ),
+    "a scale": (
+        {"x": 1e3 * TIME, "a": OIL},
+        {"time": "x", "channels": {"x": {"scale": 1e-3}, "a": {}}},
+        ["a"],
+    ),
+    "another unit": (
+        {"time [m]": 1e3 * TIME, "a": OIL},
+        {"channels": {"time": {"unit": "ms"}, "a": {}}},
+        ["a"],
+    ),
+    "a T of a unit": (
+        {"T": 7.0 * TIME, "clock": TIME},
+        {"channels": {"T": {"unit": "degC"}}},
+        ["T"],
+    ),
 }
 
 
@@ -127,3 +149,146 @@ def test_a_column_without_any_date_is_left_out(kind: str) -> None:
     data = cd.measured(pd.DataFrame(RIG).assign(when=pd.Series(np.nan, dtype=kind)))
     assert list(data.data_vars) == ["flange"]
     assert "when: holds nothing, and is left out" in data.attrs["findings_note"]
+
+
+def test_a_time_without_a_unit_is_told_and_no_fault() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        data = cd.measured(pd.DataFrame({"Zeit": TIME, "a": OIL}))
+    assert data.attrs["findings"] == ["seconds"]
+    assert data.attrs["findings_note"].startswith("Zeit: has no unit, and is taken in seconds")
+
+
+def test_channels_that_are_the_time_alone_are_refused() -> None:
+    table = pd.DataFrame({"Zeit": TIME, "a": OIL})
+    with pytest.raises(cd.MeasurementError, match=r"names the time alone; .* there are 'a'"):
+        cd.measured(table, channels={"Zeit": {"unit": "ms"}})
+
+
+def written(folder: Path, heading: str, line: str) -> Path:
+    """Write a table of 20 lines, whose time is the number that stands in them."""
+    path = folder / "rig.csv"
+    path.write_text("\n".join([heading, *(line.format(n) for n in range(20))]), encoding="utf-8")
+    return path
+
+
+GERMAN = "Zeit [ms];Kraft [N];Drehmoment [Nm]"
+#: Headings, a line, options, and the force [N] in it; the time is in milliseconds.
+FORCES: dict[str, tuple[str, str, dict[str, Any], float]] = {
+    "English": ("Time [ms],Force [N]", '{},"6,396.6"', {}, 6396.6),
+    "English, whole": ("Time [ms],Force [N]", '{},"6,397"', {}, 6397.0),
+    "millions": ("Time [ms],Force [N]", '{},"-1,006,397.5"', {}, -1006397.5),
+    "German": (GERMAN, "{};6.396,6;-470,9556", {}, 6396.6),
+    "German, stated": (GERMAN, "{};6.396,6;-470", {"decimal": ",", "separator": ";"}, 6396.6),
+    "whole, by the others": (GERMAN, "{};6.397;-470,9556", {}, 6397.0),
+    "whole, stated": (GERMAN, "{};6.397;-471", {"decimal": ","}, 6397.0),
+    "decimals, if they may be": (GERMAN, "{};6,397;-470,956", {}, 6.397),
+    "blanks": (GERMAN, "{};6 396,6;-470,9556", {}, 6396.6),
+    "blanks between tabs": (GERMAN.replace(";", "\t"), "{}\t6 396,6\t-470,9", {}, 6396.6),
+    "blanks that do not break": (GERMAN, "{};6\u00a0396,6;-470,9556", {}, 6396.6),
+    "Swiss": (GERMAN, "{};6'396.6;-470.9556", {}, 6396.6),
+    "quoted": ("Zeit [ms],Kraft [N]", '"{},0","6,3966"', {}, 6.3966),
+    "quoted, stated": (
+        "Zeit [ms],Kraft [N]",
+        '{},"6,397"',
+        {"decimal": ",", "separator": ","},
+        6.397,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FORCES)
+@pytest.mark.filterwarnings("ignore:.*throughout:chaindrive.MeasurementWarning")
+def test_thousands_and_decimals_are_told_apart(name: str, tmp_path: Path) -> None:
+    heading, line, options, force = FORCES[name]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", FutureWarning)
+        data = cd.measured(written(tmp_path, heading, line), **options)
+    np.testing.assert_allclose(data["time"], np.arange(20) / 1e3, atol=1e-12)
+    _, second, *others = heading.replace(";", ",").replace("\t", ",").split(",")
+    channel = data[second.removesuffix(" [N]")]
+    assert channel.attrs["units"] == "N"
+    np.testing.assert_allclose(channel, force, rtol=1e-15)
+    assert len(data.data_vars) == 1 + len(others)
+
+
+@pytest.mark.parametrize(
+    ("heading", "cell"),
+    [
+        ("lot", "3/14"),
+        ("lot", "2024-11"),
+        ("a [N]", "2024-11-26 10:00:00"),
+        ("a", "12,50.1"),
+    ],
+)
+def test_a_column_of_texts_is_no_date_and_told(heading: str, cell: str, tmp_path: Path) -> None:
+    path = written(tmp_path, f"Time [ms];b;{heading}", "{0};{0}.5;" + cell)
+    name = heading.partition(" ")[0]
+    text = f"{name}: holds texts such as {cell!r}, and is left out"
+    with pytest.warns(cd.MeasurementWarning, match=re.escape(text)):
+        data = cd.measured(path)
+    assert list(data.data_vars) == ["b"]
+    assert data.attrs["findings"] == ["not-a-number"]
+    # Who names other channels knows.
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        cd.measured(path, channels=["b"])
+    with pytest.raises(cd.MeasurementError, match=f"{name} holds texts .* there are 'Time', 'b'"):
+        cd.measured(path, channels=[name])
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        "%d.%m.%Y %H:%M:%S,%f",
+        "%d.%m.%y %H:%M:%S.%f",
+        "%m/%d/%Y %I:%M:%S.%f %p",
+        "%d-%b-%Y %H:%M:%S.%f",
+        "%Y-%m-%dT%H:%M:%S.%fZ",
+    ],
+)
+def test_dates_of_a_column_have_one_form(form: str, tmp_path: Path) -> None:
+    """Over a midnight: day and month are the same ones in all lines."""
+    moments = pd.Timestamp("2024-12-03 23:59:59.995") + pd.to_timedelta(np.arange(20), unit="ms")
+    path = tmp_path / "rig.csv"
+    rows = [f"{it};{n}.5;{-n}" for n, it in enumerate(moments.strftime(form))]
+    path.write_text("\n".join(["time;a;b", *rows]))
+    data = cd.measured(path)
+    np.testing.assert_allclose(data["time"], np.arange(20) / 1e3, atol=1e-12)
+    # One cell of another form, and it is none.
+    path.write_text("\n".join(["time;a;b", *rows, "3/14;1.5;2"]))
+    with pytest.raises(cd.MeasurementError, match="called time: time holds texts such as '3/14'"):
+        cd.measured(path)
+
+
+@pytest.mark.parametrize(
+    ("heading", "line", "notes"),
+    [
+        ("Zeit [ms];a [N];spare", "{0};{0}.5;", ["spare: holds nothing, and is left out"]),
+        ("Zeit [ms];a [N];", "{0};{0}.5;", []),
+        ("Zeit [ms];a [N]", "{0};{0}.5;;", []),
+        ("Zeit [ms];a [N];;", "{0};{0}.5", []),
+        ("Test 7;;\nZeit;a;count\nms;N;", "{0};{0}.5;", ["count: holds nothing, and is left out"]),
+    ],
+)
+def test_empty_cells_at_the_ends_of_lines_cost_no_heading(
+    heading: str, line: str, notes: list[str], tmp_path: Path
+) -> None:
+    data = cd.measured(written(tmp_path, heading, line))
+    np.testing.assert_allclose(data["time"], np.arange(20) / 1e3, atol=1e-12)
+    assert list(data.data_vars) == ["a"]
+    assert data["a"].attrs["units"] == "N"
+    assert data.attrs["findings_note"] == "; ".join(notes)
+
+
+def test_a_table_of_pandas_tells_its_texts() -> None:
+    table = pd.DataFrame(RIG).assign(lot="3/14", spare=None)
+    with pytest.warns(cd.MeasurementWarning, match="lot: holds texts such as '3/14'") as said:
+        data = cd.measured(table)
+    assert "spare" not in str(said[0].message)
+    assert data.attrs["findings"] == ["not-a-number", "text"]
+
+
+def test_a_decimal_mark_is_a_point_or_a_comma(tmp_path: Path) -> None:
+    with pytest.raises(cd.MeasurementError, match=re.escape("decimal = ';', must be '.' or ','")):
+        cd.measured(written(tmp_path, "time;a", "{};1"), decimal=";")

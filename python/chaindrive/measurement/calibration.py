@@ -30,7 +30,7 @@ from chaindrive.measurement.free import (
     open_to,
     priors_of,
 )
-from chaindrive.measurement.likelihood import Sides, reach_of, sides_of
+from chaindrive.measurement.likelihood import Sides, alike, reach_of, sides_of
 from chaindrive.measurement.profiling import Profile, profiled
 from chaindrive.measurement.provenance import fitted_drive
 from chaindrive.measurement.series import channel_names
@@ -65,8 +65,9 @@ class Settled(NamedTuple):
     worth: Worth
     moved: _Floats
     """What another choice of method, step and run-in moves (p,) [SI]; zero for the same choice."""
-    sides: Sides | None
-    """How far parameters may be where the drive is not straight; None of a robust loss."""
+    valleys: list[tuple[Optimum, Sides]]
+    """The best optimum and those that explain the record alike, with what the record does not
+    contradict around them; none of a robust loss."""
 
 
 def calibrate(
@@ -359,12 +360,9 @@ def _settled(
     worth = fit.worth(optima[0])
     if loss != "linear":
         # Of a robust loss χ² is no likelihood.
-        return Settled(fit, optima, worth, moved, None)
-
-    def around() -> Sides:
-        return sides_of(fit, optima[0], worth.covariance, _student(level, worth.freedom))
-
-    sides = around()
+        return Settled(fit, optima, worth, moved, [])
+    t = _student(level, worth.freedom)
+    sides = sides_of(fit, optima[0], worth.covariance, t)
     for _ in range(_VALLEYS):
         if sides.better is None:
             break
@@ -373,8 +371,10 @@ def _settled(
             break
         optima = [deeper, *optima]
         worth = fit.worth(deeper)
-        sides = around()
-    return Settled(fit, optima, worth, moved, sides)
+        t = _student(level, worth.freedom)
+        sides = sides_of(fit, deeper, worth.covariance, t)
+    best = (optima[0], sides)
+    return Settled(fit, optima, worth, moved, [best, *alike(fit, optima[1:], best, t)])
 
 
 def _student(level: float, freedom: _Floats) -> _Floats:
@@ -468,8 +468,7 @@ def _dataset(
     t = _student(level, freedom)
     below, above = nan, nan
     if settled is not None:
-        whole = (settled.optima, settled.sides, settled.moved)
-        below, above = reach_of(settled.fit, *whole, covariance, t)
+        below, above = reach_of(settled.fit, settled.valleys, settled.moved, covariance, t)
     error = np.maximum(below, above) / t
     # Where an interval is wider than that of a straight drive, so is what follows from it.
     wider = error / np.sqrt(np.diag(covariance))

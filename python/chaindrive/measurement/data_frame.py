@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from chaindrive.extras import extra
-from chaindrive.measurement.raw import RawChannel, RawRecord, numbered, numbers
+from chaindrive.measurement.raw import RawChannel, RawRecord, left_out, numbered, numbers
 from chaindrive.measurement.units import named_unit
 
 __all__ = ["read", "read_frame"]
@@ -43,7 +43,7 @@ def read_frame(frame: Any, units: Mapping[str, str | None] | None = None) -> Raw
         unit = stated.get(heading) or unit
         if column.dtype.kind in "mM":
             if column.isna().all():
-                notes.append(("text", name, "holds nothing, and is left out"))
+                notes.append(left_out(name, column))
                 continue
             first = column.dropna().iloc[0] if column.dtype.kind == "M" else pd.Timedelta(0)
             seconds = (column - first).dt.total_seconds().to_numpy(dtype=np.float64)
@@ -51,7 +51,7 @@ def read_frame(frame: Any, units: Mapping[str, str | None] | None = None) -> Raw
             continue
         values, wrong = numbers(column.to_numpy())
         if values is None:
-            notes.append(("text", name, "holds texts, and is left out"))
+            notes.append(left_out(name, column))
             continue
         if wrong:
             notes.append(("not-a-number", name, f"{wrong} cells are no numbers"))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from chaindrive.measurement.fitting import Fit, Optimum
 
-__all__ = ["Sides", "reach_of", "sides_of"]
+__all__ = ["Sides", "alike", "reach_of", "sides_of"]
 
 _Floats = NDArray[np.float64]
 
@@ -121,25 +121,39 @@ def sides_of(fit: Fit, best: Optimum, covariance: _Floats, t: _Floats) -> Sides:
     return Sides(below, above, better)
 
 
+def alike(
+    fit: Fit, optima: Sequence[Optimum], best: tuple[Optimum, Sides], t: _Floats
+) -> list[tuple[Optimum, Sides]]:
+    """Return the other valleys that explain the record alike, each with its own sides.
+
+    What is left of t² there is ``t² − (χ²_v − χ²(θ̂))``. A valley within the sides of the best adds
+    nothing to them.
+    """
+    optimum, sides = best
+    low, high = (optimum.x + it * fit.half for it in (-sides.below, sides.above))
+    found = []
+    for other in optima:
+        left = t**2 - 2.0 * (other.cost - optimum.cost)
+        if (left > 0.0).all() and ((other.x < low) | (other.x > high)).any():
+            covariance = np.asarray(np.linalg.pinv(other.jacobian.T @ other.jacobian), np.float64)
+            found.append((other, sides_of(fit, other, covariance, np.sqrt(left))))
+    return found
+
+
 def reach_of(
     fit: Fit,
-    optima: Sequence[Optimum],
-    sides: Sides | None,
+    valleys: Sequence[tuple[Optimum, Sides]],
     moved: _Floats,
     covariance: _Floats,
     t: _Floats,
 ) -> tuple[_Floats, _Floats]:
-    """Return how far intervals reach below and above the best of several optima (p,) [SI].
-
-    Another valley belongs to an interval where it explains the record alike, with what its own
-    straight line leaves it: ``t² = χ²_v − χ²(θ̂) + (θ_k − θ_vk)² / Σ_v,kk``.
+    """Return how far intervals reach below and above the best of all optima (p,) [SI].
 
     Parameters
     ----------
-    fit, optima
-        The fit and its optima, the best first.
-    sides
-        Its sides; None for those of a straight drive.
+    fit, valleys
+        The fit, its best optimum and those that explain the record alike, with their sides; none
+        where the drive is taken for straight.
     moved
         What the best was moved by where all that is chosen was chosen anew (p,) [SI].
     covariance
@@ -147,21 +161,15 @@ def reach_of(
     t
         Student's t of every parameter (p,).
     """
-    best = optima[0]
     straight = t * np.sqrt(np.diag(covariance))
-    if sides is None:
+    if not valleys:
         return straight, straight
+    best = valleys[0][0].x
+    low = np.min([it.x - sides.below * fit.half for it, sides in valleys], axis=0)
+    high = np.max([it.x + sides.above * fit.half for it, sides in valleys], axis=0)
     below, above = (
-        np.maximum(np.hypot(it * fit.half, t * np.abs(moved)), straight)
-        for it in (sides.below, sides.above)
+        np.maximum(np.hypot(it, t * np.abs(moved)), straight) for it in (best - low, high - best)
     )
-    for other in optima[1:]:
-        left = t**2 - 2.0 * (other.cost - best.cost)
-        variance = np.diag(np.linalg.pinv(other.jacobian.T @ other.jacobian))
-        own = np.sqrt(np.maximum(left, 0.0) * variance) * fit.half
-        low, high = (np.clip(other.x + it, fit.low, fit.high) for it in (-own, own))
-        below = np.where(left > 0.0, np.maximum(below, best.x - low), below)
-        above = np.where(left > 0.0, np.maximum(above, high - best.x), above)
     return below, above
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from itertools import count
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from chaindrive.errors import MeasurementError
 
-__all__ = ["RawChannel", "RawRecord", "numbered", "numbers"]
+__all__ = ["RawChannel", "RawRecord", "left_out", "numbered", "numbers"]
 
 _Floats = NDArray[np.float64]
 
@@ -53,6 +54,9 @@ class RawRecord:
         if len(near) == 1:
             return near[0]
         known = ", ".join(repr(it.name) for it in self.channels[:24])
+        lost = [text for _, channel, text in self.notes if channel.casefold() == name.casefold()]
+        if lost and not near:
+            raise MeasurementError(f"{name} {lost[0]}: there are {known}", name)
         how = "several channels are" if near else "no channel is"
         raise MeasurementError(f"{how} named {name!r}: there are {known}", name)
 
@@ -66,6 +70,15 @@ def numbered(names: Sequence[str], taken: Collection[str] = ()) -> list[str]:
             name = next(it for n in count(1) if (it := f"{name} {n}") not in others)
         found.append(name)
     return found
+
+
+def left_out(name: str, column: Any) -> tuple[str, str, str]:
+    """Return the note of a column of pandas that holds nothing, or texts for `numbers`."""
+    stated = column.dropna()
+    if stated.empty:
+        return "text", name, "holds nothing, and is left out"
+    example = str(stated.iloc[0])[:24]
+    return "not-a-number", name, f"holds texts such as {example!r}, and is left out"
 
 
 def numbers(values: object) -> tuple[_Floats | None, int]:

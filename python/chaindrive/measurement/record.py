@@ -44,7 +44,7 @@ _TIMES = (
     *("timestamp", "timestamps", "datetime", "date"),
 )
 #: Findings that are no faults.
-_HARMLESS = ("text",)
+_HARMLESS = ("text", "seconds")
 
 
 def measured(
@@ -75,7 +75,8 @@ def measured(
     channels
         What each channel is, by its name in the file: a `chaindrive.measurement.Sensor`, the text
         of its quantity such as ``"span_tension[crank-to-cam]"``, or a dict with the fields of a
-        sensor. Only these are kept. Or a list of names that are kept. All channels when absent.
+        sensor. Only these are kept. Or a list of names that are kept. All channels when absent. The
+        unit of the time may stand here too: ``{"Zeit": {"unit": "ms"}}``.
     turns
         How each shaft turns, by the name of the shaft or sprocket: a stated speed such as
         ``"300 rpm"``, the name of a channel of speed, ``{"encoder": channel, "counts": 1024}``,
@@ -139,9 +140,14 @@ def measured(
     }
     raw, source = read_raw(path, options)
     findings = [Finding(*note) for note in raw.notes]
-    timed = _timed(raw, time, None if rate is None else amount(rate, "Hz", "rate"), findings)
+    said = _sensors(raw, channels)
+    timed = _timed(raw, time, None if rate is None else amount(rate, "Hz", "rate"), said, findings)
     # The time is no channel.
-    sensors = {name: it for name, it in _sensors(raw, channels).items() if name in timed}
+    sensors = {name: it for name, it in said.items() if name in timed}
+    if said and not sensors:
+        names = ", ".join(repr(name) for name in list(timed)[:12])
+        hint = f"name the channels that are kept too: there are {names}"
+        raise MeasurementError("channels names the time alone", "channels", hint)
     bounds = _bounds(start, until)
     how = {name: turning_by(it, name, timed) for name, it in (turns or {}).items()}
     sources = [it for it in map(source_of, how.values()) if it is not None]
@@ -183,7 +189,10 @@ def measured(
     coordinates = indexed(dimensions, {})
     for base in bases:
         coordinates[base].attrs.update({"units": "s", "long_name": "time"})
-    serious = [it for it in findings if it.kind not in _HARMLESS]
+    # Who names channels misses none of those that are left out.
+    left_out = {name for _, name, _ in raw.notes} - {"", *(it.name for it in raw.channels)}
+    unmissed = left_out if channels is not None else set()
+    serious = [it for it in findings if it.kind not in _HARMLESS and it.channel not in unmissed]
     attributes = {
         "format": FORMAT,
         "measured_from": _core.one_line(source),
@@ -201,19 +210,33 @@ def measured(
 
 
 def _timed(
-    raw: RawRecord, time: str | None, rate: float | None, findings: list[Finding]
+    raw: RawRecord,
+    time: str | None,
+    rate: float | None,
+    sensors: Mapping[str, Sensor],
+    findings: list[Finding],
 ) -> dict[str, tuple[RawChannel, _Floats]]:
     """Return every channel with its times [s]; the time itself is none of them."""
     if rate is not None and not rate > 0.0:
         raise MeasurementError(f"rate = {rate}, must be positive [Hz]", "rate")
-    clocks = {} if rate is not None else _clocks(raw, time)
-    seconds = {size: _seconds(clock) for size, clock in clocks.items()}
+    # With the units that are said of them, a `Zeit` may be in milliseconds, and a T no time.
+    units = {it.name: _unit(it, sensors.get(it.name, Sensor())) for it in raw.channels}
+    told = replace(raw, channels=[replace(it, unit=units[it.name]) for it in raw.channels])
+    clocks = {} if rate is not None else _clocks(told, time)
+    seconds = {
+        size: _seconds(_sensed(clock, sensors.get(clock.name, Sensor())))
+        for size, clock in clocks.items()
+    }
+    for clock in clocks.values():
+        if not clock.unit and sensors.get(clock.name, Sensor()).scale == 1.0:
+            text = "has no unit, and is taken in seconds; `channels` may state another"
+            findings.append(Finding("seconds", clock.name, text))
     found = {}
     for channel in raw.channels:
         size = channel.values.size
-        if channel is clocks.get(size):
+        if size in clocks and channel.name == clocks[size].name:
             continue
-        if _may_be_time(channel, _called(channel)):
+        if _may_be_time(replace(channel, unit=units[channel.name]), _called(channel)):
             text = "is a time that is not taken, and is left out"
             findings.append(Finding("text", channel.name, text))
             continue
@@ -224,9 +247,10 @@ def _timed(
             times = channel.time
         if times is None:
             names = ", ".join(repr(it.name) for it in raw.channels[:12])
+            lost = [f"{name} {text}" for _, name, text in raw.notes if name.casefold() in _TIMES]
             raise MeasurementError(
                 f"{channel.name} has no time beside it, and no channel is called time: "
-                f"there are {names}",
+                + "; ".join([*lost, f"there are {names}"]),
                 channel.name,
                 _suggested(raw),
             )
@@ -390,11 +414,16 @@ def _same(one: _Floats, other: _Floats) -> bool:
     return one.size == other.size and bool(np.array_equal(one, other, equal_nan=True))
 
 
-def _sensed(channel: RawChannel, sensor: Sensor, kept: NDArray[np.int64]) -> RawChannel:
+def _unit(channel: RawChannel, sensor: Sensor) -> str | None:
+    return channel.unit if sensor.unit is None else sensor.unit
+
+
+def _sensed(
+    channel: RawChannel, sensor: Sensor, kept: NDArray[np.int64] | slice = slice(None)
+) -> RawChannel:
     """Return a channel as its sensor says it: x = sign · scale · (r − offset), in its unit."""
     values = sensor.sign * sensor.scale * (channel.values[kept] - sensor.offset)
-    unit = channel.unit if sensor.unit is None else sensor.unit
-    return replace(channel, values=values, unit=unit)
+    return replace(channel, values=values, unit=_unit(channel, sensor))
 
 
 def _in_si(

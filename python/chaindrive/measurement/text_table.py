@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from chaindrive.errors import MeasurementError
-from chaindrive.measurement.raw import RawChannel, RawRecord, numbered, numbers
+from chaindrive.measurement.raw import RawChannel, RawRecord, left_out, numbered, numbers
 from chaindrive.measurement.units import named_unit, unit_of
 
 __all__ = ["read"]
@@ -20,6 +21,33 @@ __all__ = ["read"]
 _LINES = 200
 _SEPARATORS = ("\t", ";", ",", "|", " ")
 _BLANK = {"", "nan", "na", "n/a", "null", "none", "inf", "-inf", "+inf", "-", "--", "---"}
+#: What separates thousands, beside a comma or a point that is not the decimal mark.
+_GAPS = " \u00a0\u2009\u202f'’"
+#: Numbers whose thousands are separated, by their decimal mark.
+_GROUPED = {
+    decimal: re.compile(
+        rf"[-+]?[1-9]\d{{0,2}}([{other}{_GAPS}])\d{{3}}(\1\d{{3}})*(\{decimal}\d*)?"
+    )
+    for decimal, other in ((".", ","), (",", "."))
+}
+#: How dates and times of day begin.
+_MOMENT = re.compile(r"\d{1,4}(?P<mark>[-./:])(\d{1,2}|[A-Za-z]{3})[-./:]\d{1,4}")
+_TIMES_OF_DAY = ("%H:%M:%S", "%I:%M:%S %p")
+_DATES = {
+    ".": ("%d.%m.%Y", "%d.%m.%y", "%Y.%m.%d"),
+    "-": ("%Y-%m-%d", "%d-%m-%Y", "%d-%b-%Y"),
+    # The month comes first, unless there is no such month.
+    "/": ("%m/%d/%Y", "%d/%m/%Y", "%Y/%m/%d", "%m/%d/%y", "%d/%m/%y"),
+}
+#: Forms of dates and times of day, by the first mark in them.
+_MOMENTS = {":": _TIMES_OF_DAY} | {
+    mark: (
+        *(f"{date} {time}" for date in dates for time in _TIMES_OF_DAY),
+        *(f"{date} {time}" for date in dates for time in ("%H:%M", "%I:%M %p")),
+        *dates,
+    )
+    for mark, dates in _DATES.items()
+}
 
 
 def read(
@@ -33,17 +61,21 @@ def read(
     The form is told by the lines themselves: headings are the last line of texts before the first
     line of numbers, and a line of units may stand between.
     """
+    if decimal not in (None, *_GROUPED):
+        raise MeasurementError(f"decimal = {decimal!r}, must be '.' or ','", "decimal")
     encoding, notes = _encoding(path, encoding)
     with path.open(encoding=encoding, newline="") as file:
         lines = [line.rstrip("\r\n") for line, _ in zip(file, range(_LINES), strict=False)]
     found = _form(lines, separator, decimal)
     if found is None:
         message = f"{path}: no line of numbers is among the first {len(lines)}"
+        do = "leave out" if separator or decimal else "give"
         raise MeasurementError(
-            message, path, "a heading line, then a line a sample; or give separator and decimal"
+            message, path, f"a heading line, then a line a sample; or {do} separator and decimal"
         )
     separator, decimal, first = found
-    names, units = _headings(lines[:first], _split(lines[first], separator), separator)
+    headings, units = _headings(lines[:first], _split(lines[first], separator), separator)
+    names = numbered([name or f"column {number}" for number, name in enumerate(headings, 1)])
     try:
         table = pd.read_csv(
             path,
@@ -65,16 +97,23 @@ def read(
         reason = str(error).removeprefix("Error tokenizing data. C error: ").strip()
         raise MeasurementError(f"{path}: {reason}", path, "every line has as many cells") from error
     channels = []
-    for number, (name, unit) in enumerate(zip(names, units, strict=True)):
+    for number, (heading, name, unit) in enumerate(zip(headings, names, units, strict=True)):
         column = table[number]
         if column.isna().all():
-            notes.append(("text", name, "holds nothing, and is left out"))
+            # Many programs end every line with a separator.
+            if heading:
+                notes.append(left_out(name, column))
             continue
-        values, wrong = numbers(column.to_numpy())
+        is_text = not pd.api.types.is_numeric_dtype(column)
+        # `thousands` of pandas would make 55 of 5.5, and a number of 26.11.2024.
+        cells = column.map(partial(_plain, decimal=decimal), "ignore") if is_text else column
+        values, wrong = numbers(cells.to_numpy())
         if values is None:
-            moments = _moments(column)
+            known = unit_of(unit or None)
+            is_other = known.is_known and known.si != "s"
+            moments, strange = (None, column) if is_other else _moments(column)
             if moments is None:
-                notes.append(("text", name, "holds texts, and is left out"))
+                notes.append(left_out(name, strange))
                 continue
             channels.append(RawChannel(name, "s", moments))
             continue
@@ -115,24 +154,32 @@ def _encoding(path: Path, given: str | None) -> tuple[str, list[tuple[str, str, 
 
 def _split(line: str, separator: str) -> list[str]:
     if separator == " ":
-        return line.split()
-    # Many programs end every line with a separator.
-    return [
-        cell.strip() for cell in next(csv.reader([line.rstrip(separator)], delimiter=separator))
-    ]
+        # As pandas does it: a blank that does not break separates thousands.
+        return re.split(r"[ \t]+", line.strip(" \t"))
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
+
+
+def _is_grouped(cell: str, decimal: str) -> bool:
+    return _GROUPED[decimal].fullmatch(cell) is not None
+
+
+def _plain(cell: str, decimal: str) -> str:
+    """Return a number with a decimal point and without separators of thousands.
+
+    Where the comma is the decimal mark, a point is none.
+    """
+    cell = cell.strip()
+    if _is_grouped(cell, decimal):
+        cell = re.sub(rf"[^-+\d{decimal}]", "", cell)
+    return cell.replace(".", "x").replace(",", ".") if decimal == "," else cell
 
 
 def _is_number(cell: str, decimal: str) -> bool:
-    if decimal == ",":
-        cell = cell.replace(".", "x").replace(",", ".")
     try:
-        float(cell)
+        float(_plain(cell, decimal))
     except ValueError:
         return False
     return True
-
-
-_MOMENT = re.compile(r"^\d{1,4}[-./:]\d{1,2}[-./:]\d{1,4}")
 
 
 def _form(
@@ -140,55 +187,78 @@ def _form(
 ) -> tuple[str, str, int] | None:
     """Return separator, decimal mark and the first line of numbers of a table, or None.
 
-    What makes most numbers of the most lines is the form; a comma is a decimal mark only where
-    something else separates.
+    What makes most lines as wide as each other is the form; then what has headings; then what makes
+    numbers of most cells, first without separators of thousands: `6,397` is 6.397 where it may be.
+    Where commas separate cells, one within quotes separates thousands if it may.
     """
-    best: tuple[float, str, str, int] | None = None
+    best: tuple[tuple[float, ...], str, str, int] | None = None
     for mark in [separator] if separator else _SEPARATORS:
-        for point in [decimal] if decimal else [".", ","]:
-            if mark == point:
-                continue
-            widths, counts = [], []
+        for point in [decimal] if decimal else _GROUPED:
+            widths, good, plain = [], 0.0, 0.0
             for line in lines:
                 cells = _split(line, mark) if line.strip() and not line.startswith("#") else []
-                good = sum(_is_number(it, point) for it in cells)
-                fine = good and all(
+                count = sum(_is_number(it, point) for it in cells)
+                fine = count and all(
                     _is_number(it, point) or it.casefold() in _BLANK or _MOMENT.match(it)
                     for it in cells
                 )
                 # Lines that break in the middle of a file are for pandas to refuse.
-                widths.append(len(cells) if fine or good > len(cells) / 2 else 0)
-                counts.append(good if widths[-1] else 0)
+                widths.append(len(cells) if fine or count > len(cells) / 2 else 0)
+                if widths[-1]:
+                    # Separated by blanks, `1,5 2,5` has as many numbers by blanks as by commas.
+                    good += count / len(cells)
+                    grouped = sum(_is_grouped(it, point) for it in cells)
+                    plain += (count - grouped) / len(cells) if mark != point else 0.0
             first = next((n for n, width in enumerate(widths) if width), None)
             if first is None:
                 continue
             even = sum(width == widths[first] for width in widths[first:])
-            # Separated by blanks, `1,5 2,5` has as many cells by blanks as by commas.
-            score = even * (1.0 if widths[first] == 1 else 2.0) + 1e-3 * sum(counts) / len(lines)
-            if best is None or score > best[0] * (1 + 1e-9):
+            headed = bool(_rows(lines[:first], _split(lines[first], mark), mark))
+            score = (even * (1.0 if widths[first] == 1 else 2.0), headed, good, plain)
+            if best is None or score > best[0]:
                 best = (score, mark, point, first)
     return None if best is None else best[1:]
+
+
+def _rows(above: list[str], cells: list[str], separator: str) -> list[list[str]]:
+    """Return the cells of lines that are as wide as a line of numbers.
+
+    Many programs end lines with separators: empty cells at the end may be more or fewer.
+    """
+
+    def stated(row: list[str]) -> int:
+        return max((number for number, cell in enumerate(row, 1) if cell), default=0)
+
+    width = len(cells)
+    rows = [_split(line.lstrip("#").strip(" "), separator) for line in above if line.strip("# \t")]
+    return [
+        (row + [""] * width)[:width]
+        for row in rows
+        if len(row) >= stated(cells) and stated(row) <= width
+    ]
 
 
 def _headings(
     above: list[str], cells: list[str], separator: str
 ) -> tuple[list[str], list[str | None]]:
-    """Return names and units of the columns of a table, from the lines above its numbers."""
+    """Return names and units of the columns of a table, from the lines above its numbers.
+
+    A column without a heading has an empty name.
+    """
     width = len(cells)
-    rows = [_split(line.lstrip("#").strip(), separator) for line in above if line.strip("# \t")]
-    fitting = [row for row in rows if len(row) == width]
+    fitting = _rows(above, cells, separator)
     bare: list[str | None] = [None] * width
     if not fitting:
-        return [f"column {number + 1}" for number in range(width)], bare
+        return [""] * width, bare
     units = bare
     if len(fitting) > 1 and _are_units(fitting[-1]):
         units = [cell.strip("[]() ") for cell in fitting.pop()]
     names = []
     for number, cell in enumerate(fitting[-1]):
         name, unit = named_unit(cell)
-        names.append(name or f"column {number + 1}")
+        names.append(name)
         units = [*units[:number], unit if unit is not None else units[number], *units[number + 1 :]]
-    return numbered(names), units
+    return names, units
 
 
 def _are_units(cells: list[str]) -> bool:
@@ -200,10 +270,31 @@ def _are_units(cells: list[str]) -> bool:
     return bool(stated) and 2 * len(known) > len(stated)
 
 
-def _moments(column: pd.Series) -> NDArray[np.float64] | None:
-    """Return dates and times of day as seconds after the first, or None where they are none."""
-    found = pd.to_datetime(column, errors="coerce", format="mixed")
-    if found.isna().mean() > 0.5:
-        return None
-    seconds = (found - found.dropna().iloc[0]).dt.total_seconds()
-    return np.asarray(seconds, dtype=np.float64)
+def _moments(column: pd.Series) -> tuple[NDArray[np.float64] | None, pd.Series]:
+    """Return dates and times of day as seconds after the first, and the cells that are none.
+
+    All are of one form, but for fractions of a second; None stands for a column where they are not.
+    Pandas left alone takes `3/14` and `6,396` for dates.
+    """
+    texts = column.str.strip().str.replace(",", ".")
+    strange = stated = texts.dropna()
+    begin = _MOMENT.match(stated.iloc[0])
+    for form in ("ISO8601", *_MOMENTS[begin["mark"]]) if begin else ():
+        first = _parsed(stated[:1], form).iloc[0]
+        if pd.isna(first):
+            continue
+        found = _parsed(texts, form)
+        missed = stated[found[stated.index].isna()]
+        if missed.empty:
+            return np.asarray((found - first).dt.total_seconds(), dtype=np.float64), missed
+        strange = min(strange, missed, key=len)
+    return None, column[strange.index]
+
+
+def _parsed(texts: pd.Series, form: str) -> pd.Series:
+    """Return texts as moments of a form, with a fraction of a second or without."""
+    whole, parts = (
+        pd.to_datetime(texts, format=it, errors="coerce", utc=True).dt.as_unit("ns")
+        for it in (form, form.replace("%S", "%S.%f"))
+    )
+    return whole.fillna(parts)
