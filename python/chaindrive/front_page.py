@@ -9,16 +9,25 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from chaindrive.analysis.parts import chains, sprockets
+from chaindrive.analysis.parts import chains
 from chaindrive.page import Page, escaped, table
 from chaindrive.plot.units import in_trade
+from chaindrive.pose import at_start, drive_of
 
 __all__ = ["front_page"]
 
 #: Units of forces on centres and carriers, by their lists.
 _FORCES = {"force_x": "N", "force_y": "N"}
 #: Units of what motions, torques and forces say, in SI; a motion has amplitudes in radians.
-_UNITS = {"speed": "rad/s", "torque": "N m", "force": "N", "from": "rad/s", "to": "rad/s"}
+_UNITS = {
+    "speed": "rad/s",
+    "from": "rad/s",
+    "to": "rad/s",
+    "torque": "N m",
+    "linear": "N m s",
+    "quadratic": "N m s²",
+    "force": "N",
+}
 #: Sentences of a verdict that the first page has room for.
 _SENTENCES = 2
 
@@ -76,13 +85,14 @@ def _designations(run: xr.Dataset) -> Iterator[str]:
 
 
 def _sprockets(run: xr.Dataset, told: Mapping[str, Any] | None) -> str:
-    """Role, teeth, speed, torque, power and ratio of the sprockets, and their centres."""
+    """Role, teeth, speed, torque, power and ratio of the sprockets; their centres at the start."""
     if told is None or not told["rows"]:
         return ""
-    known = sprockets(run)
+    # Not as the scene has them: what takes up the slack of a chain moves them.
+    known = at_start(drive_of(run), settled=False)["sprockets"]
 
     def centre(name: str) -> str:
-        x, y = known[name].centre if name in known else (np.nan, np.nan)
+        x, y = known[name]["centre"] if name in known else (np.nan, np.nan)
         return f"{1e3 * x:.1f}, {1e3 * y:.1f}"
 
     rows = [[*row, centre(row[0])] for row in told["rows"]]
@@ -97,13 +107,16 @@ def _load_case(run: xr.Dataset) -> Iterator[str]:
         if motion.get("kind", "held") != "held":
             yield f"{body['name']}: motion {_acting(motion, 'rad')}."
         yield from _uses(body, {"drive": "N m", "load": "N m", **_FORCES}, body["name"])
-    pretension = scene.get("route", {}).get("pretension")
-    if pretension:
-        yield f"Pretension {_told(float(pretension), 'N')}."
+    for chain in chains(run):
+        pretension = chain.route.get("pretension")
+        if pretension:
+            of = f" of {chain.name}" if chain.name else ""
+            yield f"Pretension{of} {_told(float(pretension), 'N')}."
     for tensioner in scene.get("tensioners", ()):
         push = tensioner.get("push", {})
         preload = push.get("preload")
-        by = f", preload {_told(float(preload), 'N')}" if preload is not None else ""
+        unit = "N m" if push.get("kind") == "torsion-spring" else "N"
+        by = f", preload {_told(float(preload), unit)}" if preload is not None else ""
         kind = tensioner.get("carrier", {}).get("kind", "carrier")
         yield f"Tensioner {tensioner['name']}: {kind}, {push.get('kind', 'no push')}{by}."
         yield from _uses(tensioner, _FORCES, f"Tensioner {tensioner['name']}")

@@ -16,6 +16,9 @@ from chaindrive.settings import ChannelName, MethodName, Quantity, Target
 
 __all__ = ["Simulation", "Snapshot", "View", "step_many"]
 
+# Dimensions whose labels are numbers; those of all others are names, even where these are digits.
+_NUMBERED = ("roller", "link", "joint")
+
 Snapshot = _core.Snapshot
 """A simulation as it was at a moment, to the last bit; see `Simulation.snapshot`.
 
@@ -166,7 +169,7 @@ class Simulation:
         coordinates: dict[str, Any] = {"time": self.time}
         if labels is None:
             values = values[0]
-        elif all(label.isdecimal() for label in labels):
+        elif dims[0] in _NUMBERED:
             coordinates[dims[0]] = np.arange(len(labels))
         else:
             coordinates[dims[0]] = labels

@@ -70,7 +70,7 @@ def replay(
         Where to write: ``.html`` for the page, ``.mp4`` or ``.gif`` for a movie, which takes the
         extra ``movie``. Nothing is written when absent.
     plot
-        Channels to plot beside the picture; the tension of the spans when absent.
+        Channels that a page plots beside the picture; the tension of the spans when absent.
     frames
         Largest number of frames of a page, 5001 when absent; of more samples every n-th is taken,
         and the page says so. Number of pictures of a movie, 250 when absent;
@@ -86,7 +86,8 @@ def replay(
     KeyError
         The channels that the motion takes were not recorded; the message names them.
     ValueError
-        The path ends in something else, the run holds no samples, or its store is damaged.
+        The path ends in something else, the run holds no samples, or its store is damaged; or
+        channels are to be plotted in a movie.
     WriteError
         The file cannot be written; what was in its place is still there.
 
@@ -102,6 +103,8 @@ def replay(
     if path is not None and suffix in (".mp4", ".gif"):
         from chaindrive.movies import PICTURES, movie
 
+        if plot is not None:
+            raise ValueError(f"plot = {plot!r}: a movie has no plots, a page (.html) has")
         return movie(run, path, frames=PICTURES if frames is None else frames)
     if suffix not in (".html", ".htm"):
         raise ValueError(f"{path!s}: the name must end in .html, .mp4 or .gif")

@@ -40,7 +40,7 @@ def sweep(
     until: Quantity | None = None,
     run_in: Quantity | None = None,
     every: Quantity | None = None,
-    record: Recorded | Iterable[Recorded] = (),
+    record: Recorded | Iterable[Recorded] | None = None,
     method: MethodName | None = None,
     step: Quantity | None = None,
     tolerance: Quantity | None = None,
@@ -202,7 +202,7 @@ def sweep(
     columns = _columns(vary, design)
     checked_workers(jobs, executor)
     varied = [(path, _values(values, path)) for path, values in columns.items()]
-    asked = (_listed(record), design is not None, settings)
+    asked = (_listed(() if record is None else record), design is not None, settings)
     core = _core.Sweep(drive._inner, varied, *asked)
     begin = time.perf_counter()
     place = None if output is None else place_of(output)

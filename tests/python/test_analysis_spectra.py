@@ -1,11 +1,17 @@
 """Spectra, orders, running modes, transmission error and spans against closed forms."""
 
+import functools
+
 import numpy as np
 import pytest
 import xarray as xr
 
 import chaindrive as cd
 from chaindrive import analysis
+from chaindrive.analysis.ramps import with_run_up
+from chaindrive.analysis.signal import turning
+from chaindrive.plot.panels import orders as orders_panel
+from chaindrive.plot.source import tightest_span
 
 TAU = 2.0 * np.pi
 
@@ -101,6 +107,38 @@ def test_a_run_up_says_what_it_cannot_do() -> None:
         cd.run_up(cd.scenes.spinning_ring(), 1.0, 2.0, until=1.0)
     with pytest.raises(cd.ParameterError, match="the drive keeps its direction"):
         cd.run_up(cd.scenes.marine_two_sprockets(), "-10 rpm", "20 rpm", until=1.0)
+
+
+@pytest.mark.parametrize(
+    ("motion", "sense"),
+    [
+        # Defect: all of these ran up counter-clockwise.
+        ({"kind": "ramp", "from": -3.0, "to": 0.0, "duration": 1.0}, -1.0),
+        ({"kind": "table", "times": [0.0, 1.0, 2.0], "values": [0.0, -5.0, -12.0]}, -1.0),
+        ({"kind": "speed-table", "times": [0.0, 1.0, 2.0], "speeds": [0.0, -5.0, 0.0]}, -1.0),
+        ({"kind": "constant", "speed": 0.0}, None),
+    ],
+)
+def test_a_run_up_turns_as_the_drive_does(motion: dict[str, object], sense: float | None) -> None:
+    drive = cd.scenes.marine_two_sprockets().replace({"sprockets.crank.motion": motion})
+    if sense is None:
+        with pytest.raises(cd.ParameterError, match="turns neither way"):
+            with_run_up(drive, 1.0, 2.0, until=1.0)
+        return
+    changed, *_ = with_run_up(drive, 1.0, 2.0, until=1.0)
+    ramp = changed.to_dict()["sprockets"][0]["motion"]
+    assert (ramp["from"], ramp["to"]) == (sense, 2.0 * sense)
+
+
+def test_a_run_up_with_orders_has_the_run_in_of_its_scene() -> None:
+    """Defect: its table began at the ramp, and the run-in of the scene before it."""
+    drive = cd.scenes.marine_engine()
+    given, *_ = with_run_up(drive, 9.0, 10.0, until=0.01, run_in=0.03)
+    own, *_ = with_run_up(drive.replace({"run.run_in": "30 ms"}), 9.0, 10.0, until=0.01)
+    motions = [it.to_dict()["sprockets"][0]["motion"] for it in (given, own)]
+    assert motions[0] == motions[1]
+    with pytest.raises(cd.ParameterError, match=r"run_in = '2 turns': .* in seconds"):
+        with_run_up(drive.replace({"run.run_in": "2 turns"}), 9.0, 10.0, until=0.01)
 
 
 @pytest.mark.parametrize("speed", [0.0, 15.0])
@@ -261,6 +299,8 @@ def test_what_is_missing_is_named(two_sprockets: xr.Dataset) -> None:
         two_sprockets.drive.spectrum("contact_force")
     with pytest.raises(cd.ParameterError, match="there is no span 'top'"):
         two_sprockets.drive.spectrum("span_tension", span="top")
+    with pytest.raises(cd.ParameterError, match="kind = 'psd', must be 'amplitude' or 'density'"):
+        two_sprockets.drive.spectrum("span_tension", kind="psd")
     with pytest.raises(cd.ParameterError, match="there is no span 'top'"):
         two_sprockets.drive.span_motion("top")
     with pytest.raises(cd.ParameterError, match="span left"):
@@ -269,6 +309,84 @@ def test_what_is_missing_is_named(two_sprockets: xr.Dataset) -> None:
         analysis.running_modes(cd.scenes.bicycle(), speeds=1.0)
     with pytest.raises(cd.ParameterError, match="does not turn at 90"):
         two_sprockets.drive.span_frequencies(speed=90.0)
+
+
+# Every analysis of a signal, and of the motion of a span.
+SIGNALS = {
+    "spectrum": lambda run, **more: analysis.spectrum(run, "span_tension", **more),
+    "order_spectrum": lambda run, **more: analysis.order_spectrum(
+        run, "span_tension", "crank", span="crank-camshaft", **more
+    ),
+    "order_map": lambda run: analysis.order_map(
+        run, "span_tension", "crank", turns=0.5, span="crank-camshaft"
+    ),
+    "campbell": lambda run: analysis.campbell(
+        run, "span_tension", "crank", window_time=0.4, modes=False, span="crank-camshaft"
+    ),
+    "transmission_error": lambda run, **more: analysis.transmission_error(
+        run, "crank", "camshaft", **more
+    ),
+    "speed_ripple": analysis.speed_ripple,
+    "span_motion": lambda run, **more: analysis.span_motion(run, "crank-camshaft", **more),
+    "span_envelope": lambda run, **more: analysis.span_envelope(run, "crank-camshaft", **more),
+}
+
+
+@pytest.mark.parametrize("name", ["order_spectrum", "order_map", "campbell"])
+def test_a_span_that_is_not_held_is_told(two_sprockets: xr.Dataset, name: str) -> None:
+    """Defect: `ValueError` of SciPy, or windows of NaN, and a report that could not be made."""
+    run = two_sprockets.copy(deep=True)
+    run["span_tension"][7, :] = np.nan
+    with pytest.raises(cd.ParameterError, match="span_tension is not a number at"):
+        SIGNALS[name](run)
+
+
+def test_the_tightest_span_is_one_that_is_held(two_sprockets: xr.Dataset) -> None:
+    from matplotlib import pyplot
+
+    run = two_sprockets.copy(deep=True)
+    for row, other in enumerate(reversed(run["span"].to_numpy())):
+        run["span_tension"][:] = two_sprockets["span_tension"]
+        run["span_tension"][:, row] = np.nan
+        assert tightest_span(run)["span"] == other
+        assert tightest_span(run.sel(span=other))["span"] == other
+    # A panel says why it is not drawn.
+    run["span_tension"][7, :] = np.nan
+    figure, ax = pyplot.subplots()
+    with pytest.raises(cd.ParameterError, match="not a number at 1 of 2001"):
+        orders_panel(run, ax=ax)
+    pyplot.close(figure)
+
+
+@pytest.mark.parametrize("name", [it for it in SIGNALS if it not in ("order_map", "campbell")])
+@pytest.mark.parametrize("after", [9.0, "1 ms"])
+def test_a_time_after_the_run_is_refused(
+    two_sprockets: xr.Dataset, name: str, after: object
+) -> None:
+    """Defect: errors of NumPy, or an empty array."""
+    with pytest.raises(cd.ParameterError, match=r"after = (9\.0 leaves less|'1 ms', must be)"):
+        SIGNALS[name](two_sprockets, after=after)
+
+
+def test_a_signal_over_a_part_of_a_run_meets_its_own_angles(two_sprockets: xr.Dataset) -> None:
+    tension = two_sprockets["span_tension"].sel(span="crank-camshaft")
+    part, own = (it.isel(time=slice(500, 1500)) for it in (two_sprockets, tension))
+    for orders in (analysis.order_spectrum, functools.partial(analysis.order_map, turns=0.5)):
+        expected = orders(part, own, "crank")
+        xr.testing.assert_equal(orders(two_sprockets, own, "crank"), expected)
+    with pytest.raises(cd.ParameterError, match="at times at which the run has none"):
+        analysis.order_map(two_sprockets, tension.interp(time=[0.0105, 0.02]), "crank")
+    with pytest.raises(cd.ParameterError, match="1 samples are too few"):
+        turning(two_sprockets.isel(time=[0]), "crank")
+
+
+def test_orders_above_a_campbell_diagram_are_left_out(two_sprockets: xr.Dataset) -> None:
+    """Defect: `ValueError`, argmax of an empty sequence. The mesh is at 60 Hz and above."""
+    from matplotlib import pyplot
+
+    ax = cd.plot.campbell(two_sprockets, up_to=40.0, modes=False, window_time=0.4)
+    assert [text.get_text() for text in ax.texts] == ["1, turn of crank"]
+    pyplot.close(ax.figure)
 
 
 def test_orders_are_named(two_sprockets: xr.Dataset) -> None:

@@ -142,6 +142,29 @@ def test_engagements_come_at_the_mesh_frequency(industrial):
     np.testing.assert_allclose(found["energy_lost"], 0.36 * found["energy"])
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("restitution = 0.8", "damping = 2e3", {"driver": math.nan, "driven": math.nan}),
+        ("restitution = 0.8", "film = {}", {"driver": math.nan, "driven": math.nan}),
+        ("[sprockets.contact]", "[sprockets.contact]\ndamping = 2e3", {"driver": math.nan}),
+        ("[sprockets.contact]", '[sprockets.contact]\ndissipation = "none"', {"driver": 1.0}),
+    ],
+    ids=["viscous", "film", "one", "none"],
+)
+def test_what_has_no_restitution_has_no_known_loss(industrial, old, new, expected):
+    """Defect: e = 1, and so no loss at all, for viscous teeth and under a film of oil."""
+    scene = industrial.attrs["resolved_scene"].replace(old, new, 1)
+    found = industrial.assign_attrs(resolved_scene=scene).drive.impacts()
+    for name in ("driver", "driven"):
+        e = expected.get(name, 0.8)
+        own = found.isel(engagement=np.flatnonzero(found["sprocket_of"] == name))
+        np.testing.assert_allclose(own["energy_lost"], (1 - e**2) * own["energy"])
+        np.testing.assert_allclose(own["impulse"], (1 + e) * 0.0688 * own["speed"])
+        assert np.isnan(found["power"].sel(sprocket=name)) == math.isnan(e)
+        assert np.isfinite(own["energy"]).all()
+
+
 def test_seating_is_along_the_normal_of_the_tooth(industrial):
     """A roller that swings about its seated neighbour meets the tooth with p ω sin(φ + 2π/z); φ is
     0 in the middle of the seat."""
@@ -194,6 +217,12 @@ def test_losses_are_those_of_the_ledger(industrial):
     assert float(part["efficiency"]) == pytest.approx(industrial.attrs["efficiency"], abs=1e-3)
     with pytest.raises(cd.ParameterError, match="fewer than two samples"):
         industrial.drive.losses(start=0.19999, end=0.2)
+    # Defect: a run that was cut stated the efficiency of all of it.
+    cut = industrial.isel(time=slice(1000, None))
+    assert float(cut.drive.losses()["efficiency"]) == float(part["efficiency"])
+    unknown = cut.drop_vars("energy_flows").drive.losses()["efficiency"]
+    assert np.isnan(unknown)
+    assert unknown.attrs["unknown"] == "energy_flows is not recorded"
 
 
 @pytest.mark.parametrize(("until", "unknown"), [(0.1, None), (0.01, "to and fro")])
@@ -482,8 +511,9 @@ def test_utilisation_is_load_over_limit(industrial):
     assert float(used.sel(check="twin")) == pytest.approx(15.1 / 12.16, rel=0.01)
     assert str(found["source"].sel(check="pressure").item()) == "given"
     assert str(found["source"].sel(check="static").item()) == "assumed"
-    with pytest.raises(cd.ParameterError, match="must be positive"):
-        industrial.drive.utilisation(static_factor=0.0)
+    for wrong in ({"static_factor": 0.0}, {"breaking_load": 0.0}, {"breaking_load": -5e4}):
+        with pytest.raises(cd.ParameterError, match="must be positive"):
+            industrial.drive.utilisation(**wrong)
 
 
 def test_utilisation_knows_the_rating_of_american_chains(industrial):

@@ -308,6 +308,26 @@ def test_tables_have_names_and_units(run: xr.Dataset, tmp_path: Path) -> None:
     assert {"event_kind", "event_start [s]", "event_peak_force [N]"} <= set(read.columns)
 
 
+@pytest.mark.parametrize("change", ["transposed", "several runs", "a channel of several runs"])
+def test_what_is_no_table_is_refused(run: xr.Dataset, change: str, tmp_path: Path) -> None:
+    """Defect: only the time was written, or channels were missing without a word."""
+    several = run.expand_dims(mass=[1.0, 2.0])
+    other = {
+        "transposed": run.transpose(..., "time"),
+        "several runs": several,
+        "a channel of several runs": several[["energy_residual"]],
+    }[change]
+    with pytest.raises(cd.ParameterError, match="is no table") as caught:
+        cd.save(other, tmp_path / "run.csv")
+    assert "select one run" in caught.value.hint
+    assert not list(tmp_path.iterdir())
+
+
+def test_contacts_of_an_earlier_result_do_not_stay(run: xr.Dataset, tmp_path: Path) -> None:
+    assert len(cd.save(run, tmp_path / "run.csv")) == 2
+    assert cd.save(run.drop_dims("event"), tmp_path / "run.csv") == list(tmp_path.iterdir())
+
+
 def test_parquet_knows_units_and_where_it_is_from(run: xr.Dataset, tmp_path: Path) -> None:
     parquet = pytest.importorskip("pyarrow.parquet")
     table, events = cd.save(run, tmp_path / "run.parquet")

@@ -51,6 +51,14 @@ def test_channels_are_those_of_a_run():
     assert "Verlet" in repr(simulation)
 
 
+def test_names_of_digits_are_names():
+    scene = cd.scenes.marine_two_sprockets()
+    text = scene.text.replace('"crank"', '"2"').replace('"camshaft"', '"1"')
+    simulation = cd.Simulation(cd.Drive.from_toml(text), method="verlet")
+    assert list(simulation["sprocket_angle"]["sprocket"].to_numpy()) == ["2", "1"]
+    assert simulation["link_tension"]["link"].dtype.kind == "i"
+
+
 def test_a_snapshot_brings_back_every_bit():
     simulation = cd.Simulation(cd.scenes.bicycle())
     simulation.advance_to(3e-4)

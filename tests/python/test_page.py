@@ -1,6 +1,7 @@
 """The page of a run against the arrays that it tells of, and the report made of it."""
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 import xarray as xr
 
 import chaindrive as cd
+from chaindrive.front_page import front_page
 from chaindrive.page import Page
 
 # Preset, run-in and length [s]: guides, a tensioner and particles; rigid links.
@@ -168,6 +170,31 @@ def test_the_verdict_is_seen_in_a_notebook(monkeypatch: pytest.MonkeyPatch) -> N
     assert "Verdict" not in formatter.shown(damaged)
     with pytest.raises(ValueError, match="the page of this run is damaged"):
         damaged.drive.summary()
+
+
+WORN = {"kind": "sprocket", "name": "driven", "direction": [1, 0], "within": "30 mm"}
+
+
+@pytest.mark.parametrize(
+    ("drive", "told"),
+    [
+        (cd.scenes.bicycle_derailleur, "torsion-spring, preload -0.8 N m."),
+        (cd.scenes.two_stage_timing, "Pretension of primary 200 N. Pretension of secondary 200 N."),
+        (
+            lambda: cd.scenes.industrial_16b().replace(
+                {"sprockets.driven.load": [{"kind": "resistance", "quadratic": 13}]}
+            ),
+            "load resistance, linear 0 N m s, quadratic 13 N m s².",
+        ),
+        # The taut chain, 1 % longer, puts the sprocket 10 mm beyond the centre of the scene.
+        (lambda: cd.analysis.worn(cd.scenes.industrial_16b(), 0.01, take_up=WORN), "1040.2, 0.0"),
+    ],
+    ids=["moment", "chains", "resistance", "centre"],
+)
+def test_the_first_page_tells_what_was_simulated(drive: Callable[[], cd.Drive], told: str) -> None:
+    """Defect: a preload in N, no pretension, no number, and the centre before it was moved."""
+    run = cd.simulate(drive(), until=1e-4, run_in=0, method="auto", error=False)
+    assert told in front_page(run, run.drive.summary())
 
 
 def test_a_report_is_one_file_that_asks_for_nothing(tmp_path: Path) -> None:

@@ -177,6 +177,9 @@ def test_options_choose_within_a_run() -> None:
     one = cd.plot.spectrum(run, "sprocket_speed", sprocket="intake", up_to=2e3)
     assert len(one.lines) == 1
     assert one.get_xlim()[1] <= 2e3
+    span = str(run["span"][1].item())
+    chosen = cd.plot.tension(run.sel(span=span))
+    assert [line.get_label() for line in chosen.lines] == [span]
     both = run_of("two_stage_timing")
     first = cd.plot.rainflow(both).get_title()
     second = cd.plot.rainflow(
@@ -234,6 +237,8 @@ def test_a_response_marks_its_optimum_among_the_trusted() -> None:
         cd.plot.response(line, "torque")
     with pytest.raises(cd.ParameterError, match="there is no span 'top'"):
         cd.plot.response(line, span="top")
+    with pytest.raises(cd.ParameterError, match="optimum = 'min', must be 'least' or 'largest'"):
+        cd.plot.response(line, optimum="min")
     with pytest.raises(cd.ParameterError, match="nothing to draw"):
         cd.plot.response(line.isel(speed=[0]))
     assert figures() == 0

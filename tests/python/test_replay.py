@@ -173,6 +173,8 @@ def test_run_without_motion_names_the_channels_to_record(run):
         cd.replay(run, "drive.pdf")
     with pytest.raises(ValueError, match="frames = 0"):
         cd.replay(run, frames=0)
+    with pytest.raises(ValueError, match="a movie has no plots"):
+        cd.replay(run, "nowhere/drive.mp4", plot=["span_tension"])
     with pytest.raises(ValueError, match="no samples"):
         cd.replay(run.isel(time=slice(0, 0)))
 

@@ -450,6 +450,9 @@ def test_tensioners_have_the_units_of_their_carriers():
         cd.scenes.marine_engine(), vary, until=1e-4, every=1e-4, run_in=0, record=names
     )
     assert [slider[name].attrs["units"] for name in names] == ["m", "N"]
+    # None records nothing, as leaving it out does.
+    bare = cd.sweep(cd.scenes.spinning_ring(), {"chain.mass": ["8 g"]}, until=1e-4, record=None)
+    assert "time" not in bare.dims
     vary = {"gravity": [[0.0, -9.81]]}
     arm = cd.sweep(cd.scenes.timing_drive(), vary, until=1e-5, every=1e-5, run_in=0, record=names)
     assert [arm[name].attrs["units"] for name in names] == ["rad", "N"]

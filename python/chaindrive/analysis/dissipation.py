@@ -79,7 +79,8 @@ def losses(run: xr.Dataset, *, start: float | None = None, end: float | None = N
     total = float(energy.sum())
     share = energy / total if total > 0.0 else xr.full_like(energy, math.nan)
     over_time = lost.diff("time", label="lower") / part["time"].diff("time", label="lower")
-    whole = part.sizes["time"] == run.sizes["time"]
+    # A run that was cut before holds less than it recorded.
+    whole = part.sizes["time"] == run.attrs.get("samples")
     efficiency, unknown = _efficiency(run, part, total, whole=whole)
     told = {"units": "1", "long_name": "efficiency"} | ({"unknown": unknown} if unknown else {})
     result = xr.Dataset(

@@ -94,7 +94,7 @@ def utilisation(
     ------
     ParameterError
         A channel was not recorded, the run has not ended, the breaking load or the joints are not
-        known, or a limit is not positive.
+        known, or one that is given is not positive.
     """
     recorded(run, "sprocket_angle")
     for name, value in {
@@ -102,11 +102,12 @@ def utilisation(
         "endurance_factor": endurance_factor,
         "bearing_pressure": bearing_pressure,
         "seating_speed": seating_speed,
+        "breaking_load": breaking_load,
     }.items():
-        if not value > 0.0:
+        if value is not None and not value > 0.0:
             raise ParameterError(f"{name} = {value}, must be positive", name)
     which = one_chain(run, chain)
-    strength = breaking_load or which.scene.get("breaking_load")
+    strength = which.scene.get("breaking_load") if breaking_load is None else breaking_load
     if strength is None:
         raise ParameterError(
             f"{which.title} has no breaking load in its scene: give breaking_load= [N], "

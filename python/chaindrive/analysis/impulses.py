@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from chaindrive.analysis.parts import SprocketParts, sprockets
 from chaindrive.analysis.seating import striking
-from chaindrive.analysis.signal import recorded, require, turning
+from chaindrive.analysis.signal import late, recorded, require, turning
 from chaindrive.errors import ParameterError
 from chaindrive.extras import extra
 
@@ -52,7 +52,7 @@ def impulse_spectrum(
     Forces that contacts bear while they last are left out: the impulse that is logged of a roller
     that stays is its load times the time of its wrap, and no blow. So is the length of a blow:
     above the inverse of twice that, lines of a force would be lower. e is that of the scene, and of
-    no loss where a film of oil takes its place.
+    no loss where a film of oil or viscous damping takes its place.
 
     Parameters
     ----------
@@ -300,16 +300,13 @@ def _trains(run: xr.Dataset, after: float, mass: float | None) -> list[_Train]:
         raise ParameterError("no contacts were logged: simulate(…, events='teeth')", "events")
     recorded(run, "sprocket_angle")
     require(run, "sprocket")
-    time = run["time"].to_numpy().astype(float)
-    late = run.isel(time=slice(int(np.searchsorted(time, after)), None))
-    if late.sizes["time"] < 2:
-        raise ParameterError(f"after = {after} leaves less than two samples", "after")
-    return [_train(run, late, wheel, mass) for wheel in sprockets(run).values()]
+    part = late(run, after)
+    return [_train(run, part, wheel, mass) for wheel in sprockets(run).values()]
 
 
-def _train(run: xr.Dataset, late: xr.Dataset, wheel: SprocketParts, mass: float | None) -> _Train:
-    time = late["time"].to_numpy().astype(float)
-    angle, _ = turning(late, wheel.name)
+def _train(run: xr.Dataset, part: xr.Dataset, wheel: SprocketParts, mass: float | None) -> _Train:
+    time = part["time"].to_numpy().astype(float)
+    angle, _ = turning(part, wheel.name)
     if (np.diff(angle) <= 0.0).any():
         raise ParameterError(
             f"{wheel.name} stands or goes back: orders need a sprocket that turns on", "sprocket"
@@ -320,8 +317,9 @@ def _train(run: xr.Dataset, late: xr.Dataset, wheel: SprocketParts, mass: float 
     # A contact that is closed when the record begins has no onset in it.
     mine = of & (begun > time[0]) & (begun <= time[-1])
     speed = run["event_onset_speed"].to_numpy()[mine]
+    restitution = 1.0 if wheel.restitution is None else wheel.restitution
     # J = (1 + e) m v
-    impulse = (1.0 + wheel.restitution) * striking(wheel.chain, mass) * speed
+    impulse = (1.0 + restitution) * striking(wheel.chain, mass) * speed
     phase = np.interp(begun[mine], time, turned)
     # The order in which contacts were logged is that in which they ended: it must not matter.
     order = np.argsort(phase, kind="stable")

@@ -46,8 +46,8 @@ def joint_work(
     Parameters
     ----------
     run
-        A run with ``roller_x``, ``roller_y`` and ``link_tension``; for rigid links
-        ``joint_angle`` and ``joint_force`` are better.
+        A run with ``roller_x``, ``roller_y``, ``link_tension`` and ``sprocket_angle``; for rigid
+        links ``joint_angle`` and ``joint_force`` are better in place of the first three.
     chain
         Name of the chain, where there are several.
     pin_diameter, bush_length

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from chaindrive.analysis.order_names import order_names
 from chaindrive.analysis.running import running_modes
-from chaindrive.analysis.signal import label, sample_rate, signal, turning
+from chaindrive.analysis.signal import finite, label, late, sample_rate, signal, turning
 from chaindrive.errors import ParameterError
 from chaindrive.extras import extra
 from chaindrive.pose import at_start, drive_of
@@ -62,9 +62,11 @@ def order_map(
     Raises
     ------
     ParameterError
-        A channel is missing, the shaft goes back, or turns less than one window.
+        A channel is missing or holds what is not a number, the shaft goes back, or turns less than
+        one window.
     """
     values = _single(signal(run, channel, at))
+    run = _during(run, values)
     angle, _ = turning(run, shaft)
     revolution, even, density = over_angle(values, angle)
     size = round(turns * density)
@@ -131,15 +133,14 @@ def order_spectrum(
     xarray.DataArray
         (order,).
     """
-    late = run.isel(time=slice(int(np.searchsorted(run["time"], after)), None))
-    if not isinstance(channel, str):
-        channel = channel.sel(time=late["time"])
-    angle, _ = turning(late, shaft)
+    values = late(signal(run, channel, at), after)
+    run = late(run, after)
+    angle, _ = turning(_during(run, values), shaft)
     # Whole turns: the orders of the shaft fall on lines.
     turns = np.floor(angle[-1] / (2 * np.pi))
     if turns < 1:
         raise ParameterError(f"{shaft} does not turn once in this run", "shaft")
-    found = order_map(late, channel, shaft, turns=float(turns), window=window, **at)
+    found = order_map(run, values, shaft, turns=float(turns), window=window)
     return found.isel(turn=0, drop=True)
 
 
@@ -215,10 +216,15 @@ def campbell(
     xarray.Dataset
         ``amplitude`` (time, frequency) with the coordinate ``speed`` [rad/s] of every window;
         ``order_frequency`` (order, time) [Hz]; ``mode_frequency`` (mode, mode_speed) [Hz].
+
+    Raises
+    ------
+    ParameterError
+        A channel is missing or holds what is not a number, or a window too few samples.
     """
     values = _single(signal(run, channel, at))
     rate = sample_rate(values)
-    samples = values.to_numpy().astype(float)
+    samples = finite(values)
     size = round((window_time or samples.size / rate / 40.0) * rate)
     if not 8 <= size <= samples.size:
         raise ParameterError(
@@ -301,6 +307,21 @@ def _single(values: xr.DataArray) -> xr.DataArray:
     return values
 
 
+def _during(run: xr.Dataset, values: xr.DataArray) -> xr.Dataset:
+    """Return a run at the times of a signal, which may be one over a part of it."""
+    times = values["time"].to_numpy()
+    if np.array_equal(times, run["time"]):
+        return run
+    if not np.isin(times, run["time"]).all():
+        raise ParameterError(
+            f"{label(values)} has samples at times at which the run has none: orders need the "
+            "angle of the shaft at each",
+            "channel",
+            "a signal at samples of the run",
+        )
+    return run.sel(time=times)
+
+
 def over_angle(
     values: xr.DataArray, angle: NDArray[np.float64], density: float | None = None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
@@ -318,8 +339,9 @@ def over_angle(
     Raises
     ------
     ParameterError
-        The shaft stands or goes back.
+        The shaft stands or goes back, or the signal holds what is not a number.
     """
+    samples = finite(values)
     cubic = extra("scipy.interpolate", "order maps").CubicSpline
     steps = np.diff(angle)
     if (steps <= 0.0).any():
@@ -331,7 +353,7 @@ def over_angle(
         # Twenty times the samples at mean speed are enough for any run-up, and fit into memory.
         density = min(density, np.ceil(20.0 * angle.size * 2 * np.pi / angle[-1]))
     revolution = np.arange(0.0, angle[-1] / (2 * np.pi), 1.0 / density)
-    return revolution, cubic(angle / (2 * np.pi), values.to_numpy())(revolution), density
+    return revolution, cubic(angle / (2 * np.pi), samples)(revolution), density
 
 
 def _starts(samples: int, size: int, overlap: float) -> NDArray[np.int64]:

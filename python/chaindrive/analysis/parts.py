@@ -44,6 +44,8 @@ class ChainParts:
     """Whether it is an endless chain; an open strand has one roller more than links."""
     scene: Mapping[str, Any]
     """Its table in the resolved scene, in SI units."""
+    route: Mapping[str, Any]
+    """Its route in the resolved scene."""
     joints: Mapping[str, Any]
     """The contact of pins and bushes in the resolved scene."""
 
@@ -149,8 +151,9 @@ class SprocketParts:
     """Its centre [m] as the scene has it, before anything is adjusted."""
     stands: bool
     """Whether it stands there during the run."""
-    restitution: float
-    """Restitution of rollers on its teeth [–], as asked for in the scene."""
+    restitution: float | None
+    """Restitution of rollers on its teeth [–], as asked for in the scene; None where a film of oil
+    or viscous damping takes its place."""
     scene: Mapping[str, Any]
     """Its table in the resolved scene, in SI units."""
 
@@ -199,6 +202,7 @@ def chains(run: xr.Dataset) -> list[ChainParts]:
             links=int(table["links"]),
             closed="ends" not in table,
             scene=table,
+            route=table.get("route") or scene.get("route", {}),
             joints=joints,
         )
         found.append(chain)
@@ -225,9 +229,8 @@ def sprockets(run: xr.Dataset) -> dict[str, SprocketParts]:
     tables = {table["name"]: table for table in scene.get("sprockets", [])}
     found: dict[str, SprocketParts] = {}
     for chain in chains(run):
-        route = chain.scene.get("route") or scene.get("route", {})
-        stops = route.get("stops", list(tables))
-        moved = route.get("adjust", {}).get("kind", "nothing") != "nothing"
+        stops = chain.route.get("stops", list(tables))
+        moved = chain.route.get("adjust", {}).get("kind", "nothing") != "nothing"
         for stop in stops:
             if stop not in tables:
                 continue
@@ -284,9 +287,16 @@ def _scene(run: xr.Dataset) -> dict[str, Any]:
     return tomllib.loads(text)
 
 
-def _restitution(scene: Mapping[str, Any], sprocket: Mapping[str, Any]) -> float:
-    teeth = scene.get("contact", {}).get("teeth", {}) | sprocket.get("contact", {})
-    return float(teeth.get("restitution", 1.0))
+def _restitution(scene: Mapping[str, Any], sprocket: Mapping[str, Any]) -> float | None:
+    # What a sprocket says goes before what all teeth have.
+    for contact in (sprocket.get("contact", {}), scene.get("contact", {}).get("teeth", {})):
+        if "film" in contact or "damping" in contact:
+            return None
+        if contact.get("dissipation") == "none":
+            return 1.0
+        if "restitution" in contact:
+            return float(contact["restitution"])
+    return None
 
 
 def _positive(value: float, name: str) -> float:

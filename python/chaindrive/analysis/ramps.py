@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -53,8 +54,8 @@ def run_up(
     until
         Duration of the ramp and of the run [s].
     run_in
-        What is simulated before the ramp, at the speed from which it starts, as in `simulate`; in
-        seconds where the motion has orders.
+        What is simulated before the ramp, at the speed from which it starts, as in `simulate`, or
+        in the scene when absent; in seconds where the motion has orders.
     of
         Sprocket or shaft whose motion is replaced; needed where several have one.
     record
@@ -71,7 +72,7 @@ def run_up(
     Raises
     ------
     ParameterError
-        No motion is given, several are, or the speeds are not positive.
+        No motion is given, several are, it turns neither way, or the speeds are not positive.
     """
     changed, name, speed = with_run_up(drive, from_, to, until=until, run_in=run_in, of=of)
     channels = _with_angles(drive, record)
@@ -99,8 +100,14 @@ def with_run_up(
     if not until > 0.0:
         raise ParameterError(f"until = {until}, must be positive [s]", "until")
     kind, name, motion = prescribed(drive, of)
-    direction = -1.0 if float(motion.get("speed", motion.get("to", 1.0))) < 0.0 else 1.0
     path = f"{kind}.{name}.motion"
+    direction = _direction(motion)
+    if direction == 0.0:
+        raise ParameterError(
+            f"{path} turns neither way, so that a run-up has no direction: give it a speed, "
+            "negative for clockwise",
+            "drive",
+        )
     ramp = {"kind": "ramp", "from": from_, "to": to, "duration": until}
     ramped = drive.replace({path: ramp})
     # The scene's own reader turns texts with units into rad/s.
@@ -123,6 +130,8 @@ def with_run_up(
             "drive",
         )
     fastest = max(start, end) * max(float(term["order"]) for term in terms) / (2 * math.pi)
+    if run_in is None:
+        run_in = drive.resolved().to_dict().get("run", {}).get("run_in")
     in_seconds: Any = with_unit(run_in)
     if isinstance(in_seconds, str):
         raise ParameterError(
@@ -143,6 +152,14 @@ def with_run_up(
         angle += amplitude * (np.sin(order * smooth + phase) - math.sin(phase))
     table = {"kind": "table", "times": time, "values": angle}
     return drive.replace({path: table}), name, (start, end)
+
+
+def _direction(motion: Mapping[str, Any]) -> float:
+    """Return 1 for a motion that turns counter-clockwise, −1 for clockwise, 0 for neither."""
+    if motion["kind"] == "table":
+        return float(np.sign(motion["values"][-1] - motion["values"][0]))
+    speeds = motion.get("speeds", [motion.get(key, 0.0) for key in ("speed", "to", "from")])
+    return next((float(np.sign(speed)) for speed in speeds if speed != 0.0), 0.0)
 
 
 def _ramp(

@@ -29,7 +29,9 @@ def impacts(run: xr.Dataset, *, mass: float | None = None) -> xr.Dataset:
 
     The closing speed v is along the normal of the tooth. It is held against the speed of a roller
     that swings about its seated neighbour, v₀ = p ω: with a pressure angle φ about p ω sin(φ +
-    2π/z) of it is along the normal.
+    2π/z) of it is along the normal. e is the restitution that the scene asks for. Where a film of
+    oil or viscous damping takes its place, J, ΔE and the power that is lost are NaN: what comes
+    back then hangs on the speed.
 
     Parameters
     ----------
@@ -133,7 +135,7 @@ def _of(run: xr.Dataset, wheel: SprocketParts, mass: float) -> tuple[xr.Dataset,
     came = first & ~stays if order.size else first
     picked = chosen.isel(event=order[came])
     speed = picked["event_onset_speed"].to_numpy()
-    restitution = wheel.restitution
+    restitution = math.nan if wheel.restitution is None else wheel.restitution
     # J = (1 + e) m v,  E = ½ m v²,  ΔE = ½ (1 − e²) m v²
     energy = 0.5 * mass * speed**2
     columns = {

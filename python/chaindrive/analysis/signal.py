@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -10,7 +10,18 @@ from numpy.typing import NDArray
 
 from chaindrive.errors import ParameterError
 
-__all__ = ["label", "recorded", "require", "sample_rate", "signal", "turning"]
+__all__ = [
+    "finite",
+    "label",
+    "late",
+    "recorded",
+    "require",
+    "sample_rate",
+    "signal",
+    "turning",
+]
+
+_Timed = TypeVar("_Timed", xr.Dataset, xr.DataArray)
 
 
 _NAMED = ("chain", "span", "sprocket", "shaft", "guide", "tensioner", "link", "roller", "joint")
@@ -64,6 +75,47 @@ def signal(run: xr.Dataset, channel: str | xr.DataArray, at: dict[str, Any]) -> 
     return chosen.transpose(..., "time")
 
 
+def late(run: _Timed, after: float) -> _Timed:
+    """Return what a run or a signal holds from a time on [s].
+
+    Raises
+    ------
+    ParameterError
+        That is less than two samples.
+    """
+    if isinstance(after, str):
+        raise ParameterError(f"after = {after!r}, must be a time in s", "after", "a number")
+    found = run.isel(time=slice(int(np.searchsorted(run["time"], after)), None))
+    if found.sizes["time"] < 2:
+        raise ParameterError(
+            f"after = {after} leaves less than two samples of {run.sizes['time']}: "
+            "give an earlier time, or simulate longer",
+            "after",
+            "an earlier time",
+        )
+    return found
+
+
+def finite(values: xr.DataArray) -> NDArray[np.float64]:
+    """Return the samples of a signal, all of which are numbers.
+
+    Raises
+    ------
+    ParameterError
+        Some are not, such as the tension of a span while no roller holds it.
+    """
+    samples = values.to_numpy().astype(float)
+    missing = np.count_nonzero(~np.isfinite(samples))
+    if missing:
+        name = str(values.name or "the signal")
+        raise ParameterError(
+            f"{name} is not a number at {missing} of {samples.size} samples: leave them out, "
+            "`run.sel(time=slice(…, …))`, or take another signal",
+            name,
+        )
+    return samples
+
+
 def sample_rate(values: xr.DataArray) -> float:
     """Return the samples a second [Hz] of a signal sampled at equal intervals."""
     time = values["time"].to_numpy()
@@ -81,10 +133,17 @@ def turning(run: xr.Dataset, shaft: str) -> tuple[NDArray[np.float64], NDArray[n
     """Return the angle that a shaft or sprocket has turned by [rad], and its speed [rad/s].
 
     Both (time,), positive in the direction in which it turns in the mean.
+
+    Raises
+    ------
+    ParameterError
+        Its angle was not recorded, or at less than two samples.
     """
     kind = "shaft" if "shaft" in run.dims and shaft in run["shaft"].to_numpy() else "sprocket"
     name = f"{kind}_angle"
     angle = signal(run, name, {kind: shaft}).to_numpy().astype(float)
+    if angle.size < 2:
+        raise ParameterError(f"{angle.size} samples are too few: record at least 2", "time")
     angle = (angle - angle[0]) * (1.0 if angle[-1] >= angle[0] else -1.0)
     return angle, np.gradient(angle, run["time"].to_numpy())
 

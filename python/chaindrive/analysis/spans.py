@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from chaindrive.analysis.signal import recorded
+from chaindrive.analysis.signal import late, recorded
 from chaindrive.drive import Drive
 from chaindrive.errors import ParameterError
 from chaindrive.pose import at_start, drive_of
@@ -251,10 +251,10 @@ def span_motion(
     Raises
     ------
     ParameterError
-        Positions were not recorded, or there is no such span.
+        Positions were not recorded, there is no such span, or less than two samples are left.
     """
     recorded(run, "roller_x", "roller_y")
-    run = run.isel(time=slice(int(np.searchsorted(run["time"], after)), None))
+    run = late(run, after)
     wanted = np.atleast_1d(np.asarray(places, dtype=float))
     if ((wanted <= 0.0) | (wanted >= 1.0)).any():
         raise ParameterError(f"places = {places}, must lie between 0 and 1", "places")

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from chaindrive.analysis.signal import label, sample_rate, signal
+from chaindrive.analysis.signal import finite, label, late, sample_rate, signal
 from chaindrive.errors import ParameterError
 from chaindrive.extras import extra
 
@@ -59,16 +59,18 @@ def spectrum(
     Raises
     ------
     ParameterError
-        The channel was not recorded, a label does not exist, or samples are too few.
+        The channel was not recorded, a label or kind does not exist, samples are too few, or some
+        are not a number.
 
     References
     ----------
     G. Heinzel, A. Rüdiger, R. Schilling, *Spectrum and spectral density estimation by the
     discrete Fourier transform*, Max-Planck-Institut für Gravitationsphysik, 2002.
     """
+    if kind not in ("amplitude", "density"):
+        raise ParameterError(f"kind = {kind!r}, must be 'amplitude' or 'density'", "kind")
     scipy_signal = extra("scipy.signal", "spectra")
-    values = signal(run, channel, at)
-    values = values.isel(time=slice(int(np.searchsorted(values["time"], after)), None))
+    values = late(signal(run, channel, at), after)
     rate = sample_rate(values)
     if segments < 1:
         raise ParameterError(f"segments = {segments}, must be at least 1", "segments")
@@ -76,16 +78,9 @@ def spectrum(
     length = int(2 * values.sizes["time"] / (segments + 1))
     if length < 8:
         raise ParameterError(f"{segments} segments leave {length} samples each", "segments")
-    samples = values.to_numpy()
-    finite = np.isfinite(samples)
-    if not finite.all():
-        raise ParameterError(
-            f"{values.name} is not a number at {np.count_nonzero(~finite)} samples: see `after`",
-            str(values.name),
-        )
     density = kind == "density"
     frequency, power = scipy_signal.welch(
-        samples,
+        finite(values),
         rate,
         window=window,
         nperseg=length,

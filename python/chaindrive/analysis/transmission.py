@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from chaindrive import kinematics
-from chaindrive.analysis.signal import recorded, require, signal
+from chaindrive.analysis.signal import late, recorded, require, signal
 from chaindrive.errors import ParameterError
 from chaindrive.pose import at_start, drive_of
 
@@ -43,9 +43,9 @@ def transmission_error(
     Raises
     ------
     ParameterError
-        The angles were not recorded, or there is no such sprocket.
+        The angles were not recorded, there is no such sprocket, or less than two samples are left.
     """
-    run = run.isel(time=slice(int(np.searchsorted(run["time"], after)), None))
+    run = late(run, after)
     angles = [
         signal(run, "sprocket_angle", {"sprocket": name}).to_numpy() for name in (driver, driven)
     ]
@@ -106,7 +106,7 @@ def speed_ripple(run: xr.Dataset, *, after: float = 0.0) -> xr.Dataset:
     """
     recorded(run, "sprocket_speed")
     require(run, "sprocket")
-    run = run.isel(time=slice(int(np.searchsorted(run["time"], after)), None))
+    run = late(run, after)
     speed = run["sprocket_speed"]
     mean = speed.mean("time")
     found = {

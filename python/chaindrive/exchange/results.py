@@ -29,8 +29,9 @@ def save(run: xr.Dataset, path: str | PathLike[str]) -> list[Path]:
     ``.nc`` is NetCDF with everything that the dataset holds, and takes the extra ``netcdf``;
     ``.csv`` and ``.parquet`` (extra ``parquet``) are tables of one row a sample, with columns such
     as ``span_tension[crank-to-cam] [N]``. Contacts that were logged go to a second table beside
-    it, ``run.events.csv``. Parquet has unit, description and label of every column in its metadata,
-    and the attributes of the result as JSON under ``chaindrive``.
+    it, ``run.events.csv``; where none were logged, what an earlier result left there is removed.
+    Parquet has unit, description and label of every column in its metadata, and the attributes of
+    the result as JSON under ``chaindrive``.
 
     Parameters
     ----------
@@ -47,7 +48,8 @@ def save(run: xr.Dataset, path: str | PathLike[str]) -> list[Path]:
     Raises
     ------
     ParameterError
-        The name ends otherwise, or the dataset has no samples over time for a table.
+        The name ends otherwise; or for a table the dataset has no samples over time, more than one
+        run, or another dimension before time.
     WriteError
         A file cannot be written; what was in its place is still there.
 
@@ -74,19 +76,24 @@ def save(run: xr.Dataset, path: str | PathLike[str]) -> list[Path]:
     if file.suffix not in (".csv", ".parquet"):
         hint = "a Zarr store is written by `simulate(…, output=…)`"
         raise ParameterError(f"{file}: the name must end in {_SUFFIXES}", "path", hint)
-    if "time" not in run.dims or any(len(of.dims) > 2 for of in _over(run, "time")):
-        message = "the dataset is no table: it has no samples over time, or more than one run"
-        raise ParameterError(message, "run", "select one run, or write NetCDF")
+    over_time = [of.dims for of in run.data_vars.values() if "time" in of.dims]
+    if "time" not in run.dims or any(of[0] != "time" or len(of) > 2 for of in over_time):
+        message = "the dataset is no table: it has no samples over time, or more than one run, or "
+        message += "another dimension before time"
+        hint = "select one run, put time first by run.transpose('time', ...), or write NetCDF"
+        raise ParameterError(message, "run", hint)
     make = _csv if file.suffix == ".csv" else _parquet
-    tables = {"time": file}
+    tables, beside = {"time": file}, file.with_suffix(f".events{file.suffix}")
     if "event" in run.dims:
-        tables["event"] = file.with_suffix(f".events{file.suffix}")
+        tables["event"] = beside
     # Both places are found fit, and packages imported, before one is written.
     places = [(NewFile(table), of) for of, table in tables.items()]
     made = [(place, make(_columns(run, of), run.attrs)) for place, of in places]
     for place, write in made:
         with place as part:
             write(part)
+    if "event" not in run.dims:
+        beside.unlink(missing_ok=True)
     return list(tables.values())
 
 

@@ -44,8 +44,10 @@ def tension(run: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     # Open strands and rings have links, and no spans.
     name = next((name for name in known if run[name].size), known[0])
     values = run[name]
-    dim = str(values.dims[1])
+    dim = name.removesuffix("_tension")
     require(run, dim)
+    if dim not in values.dims:
+        values = values.expand_dims(dim)
     with drawing(ax) as ax:
         factor, unit = in_trade("N", values)
         crowded = values.sizes[dim] > 12

@@ -121,12 +121,15 @@ def span_of(run: xr.Dataset) -> str:
 
 
 def tightest_span(run: xr.Dataset) -> xr.DataArray:
-    """Return the tension of the span that is tightest in the mean [N], (time,)."""
+    """Return the tension of the span that is tightest in the mean while held [N], (time,)."""
     require(run, "span")
     recorded(run, "span_tension")
     tension = run["span_tension"]
-    found: xr.DataArray = tension.isel(span=int(np.argmax(tension.mean("time").to_numpy())))
-    return found
+    if "span" not in tension.dims:
+        return tension
+    # A span that no roller ever holds has no mean.
+    mean = tension.mean("time").fillna(-np.inf)
+    return tension.isel(span=int(np.argmax(mean.to_numpy())))
 
 
 def turns_of(run: xr.Dataset, shaft: str) -> float:

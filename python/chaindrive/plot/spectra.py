@@ -214,8 +214,10 @@ def campbell(
         _map(ax, speed, frequency, found["amplitude"])
         for order in found["order"].to_numpy():
             line = found["order_frequency"].sel(order=order).to_numpy()
-            ax.plot(speed, line, color="white", linewidth=0.8, linestyle="--")
             within = line <= frequency[-1]
+            if not within.any():
+                continue
+            ax.plot(speed, line, color="white", linewidth=0.8, linestyle="--")
             last = int(np.flatnonzero(within)[np.argmax(speed[within])])
             high = line[last] > 0.5 * frequency[-1]
             ax.annotate(

@@ -48,8 +48,8 @@ def response(
     Raises
     ------
     ParameterError
-        The sweep has no such statistic or label, varies more than two values, or no variant of it
-        has one.
+        The sweep has no such statistic or label, varies more than two values, no variant of it has
+        one, or there is no such optimum.
 
     Examples
     --------
@@ -61,6 +61,8 @@ def response(
     >>> ax.get_xlabel()
     'speed [rpm]'
     """
+    if optimum not in ("least", "largest"):
+        raise ParameterError(f"optimum = {optimum!r}, must be 'least' or 'largest'", "optimum")
     values, distrusted = _chosen(sweep, quantity, at)
     varied = [str(dim) for dim in values.dims]
     trusted = values.where(~distrusted)
