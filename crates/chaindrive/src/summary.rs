@@ -256,8 +256,27 @@ impl Summary {
         }
         self.reading = end;
         self.known.take();
-        self.account
-            .end(simulation.outstanding_periods(), self.period);
+        let periods = simulation.outstanding_periods();
+        for period in &periods {
+            // The last sample stands before the end where the interval of samples does not go into the run.
+            if self.ended.is_nan() || period.time[1] > self.ended {
+                self.balance_at(period.time[1], period.energy[1]);
+            }
+        }
+        self.account.end(periods, self.period);
+    }
+
+    /// Takes in the energy at a time \[s\].
+    fn balance_at(&mut self, time: f64, energy: Energy) {
+        let before = self.start.map_or(energy, |_| self.last);
+        let start = *self.start.get_or_insert(energy);
+        self.turnover.push(&start, &before, &energy);
+        let residual = energy.residual(&start);
+        if residual.abs() > self.residual.abs() || residual.is_nan() {
+            self.residual = residual;
+        }
+        self.last = energy;
+        self.ended = time;
     }
 
     /// Takes in a reading of the spans: time \[s\], tension of every span \[N\], number of pressed links of every chain, phases of forcings \[rad\].
@@ -288,15 +307,7 @@ impl Summary {
             self.largest_force = self.largest_force.max(force);
             value_counts::note(&mut self.forces, force * COUNTS_PER_NEWTON);
         }
-        let before = self.start.map_or(sample.energy, |_| self.last);
-        let start = *self.start.get_or_insert(sample.energy);
-        self.turnover.push(&start, &before, &sample.energy);
-        let residual = sample.energy.residual(&start);
-        if residual.abs() > self.residual.abs() || residual.is_nan() {
-            self.residual = residual;
-        }
-        self.last = sample.energy;
-        self.ended = sample.time;
+        self.balance_at(sample.time, sample.energy);
         self.samples += 1;
     }
 
@@ -452,7 +463,7 @@ impl Summary {
         lost.filter(|(_, lost)| *lost != 0.0).collect()
     }
 
-    /// Time from the first to the last sample \[s\]; NaN without one.
+    /// Time from the first sample to the last, or to the [end](Self::end) \[s\]; NaN without one.
     pub fn duration(&self) -> f64 {
         self.ended - self.began.unwrap_or(f64::NAN)
     }

@@ -49,7 +49,12 @@ impl RunClaims {
     pub(crate) fn take(path: &Path, existing: Existing) -> Result<Self, Failure> {
         Ok(Self {
             samples: claim(path, existing)?,
-            contacts: claim(&path.with_extension("events.csv"), existing)?,
+            // Nobody has named this place: samples that are there are another run's.
+            contacts: claim_table(
+                &path.with_extension("events.csv"),
+                existing,
+                &[EventColumn::Kind.name()],
+            )?,
         })
     }
 }
@@ -337,8 +342,13 @@ impl TableClaim {
     }
 }
 
-/// Claims a place for a table, unless something else is there.
+/// Claims a place for a table, unless something else than one of ours is there.
 pub(crate) fn claim(path: &Path, existing: Existing) -> Result<TableClaim, Failure> {
+    claim_table(path, existing, &[TIME, VARIANT, EventColumn::Kind.name()])
+}
+
+/// Claims a place for a table, unless something else is there than one whose first column is one of some.
+fn claim_table(path: &Path, existing: Existing, firsts: &[&str]) -> Result<TableClaim, Failure> {
     let taken = |found, hint| Failure::Taken {
         path: path.display().to_string(),
         found,
@@ -362,7 +372,7 @@ pub(crate) fn claim(path: &Path, existing: Existing) -> Result<TableClaim, Failu
     if !place.exists() {
         return Ok(claimed);
     }
-    if !place.is_file() || !is_table(place).map_err(|source| failed(path, source))? {
+    if !place.is_file() || !is_table(place, firsts).map_err(|source| failed(path, source))? {
         return Err(taken("this is not a table of chaindrive", ""));
     }
     if existing == Existing::Keep {
@@ -374,9 +384,8 @@ pub(crate) fn claim(path: &Path, existing: Existing) -> Result<TableClaim, Failu
     Ok(claimed)
 }
 
-/// Whether a file is empty, or begins as our tables do.
-fn is_table(path: &Path) -> io::Result<bool> {
-    let firsts = [TIME, VARIANT, EventColumn::ALL[0].name()];
+/// Whether a file is empty, or begins with one of some columns.
+fn is_table(path: &Path, firsts: &[&str]) -> io::Result<bool> {
     let longest = firsts.iter().map(|first| first.len()).max().unwrap_or(0);
     let mut begin = Vec::new();
     File::open(path)?

@@ -206,6 +206,11 @@ impl RunArguments {
         self.record.iter().any(|name| !name.trim().is_empty())
     }
 
+    /// Whether contacts are asked for, other than by the scene.
+    pub(crate) fn asks_for_contacts(&self) -> bool {
+        self.events.iter().any(|name| !name.trim().is_empty())
+    }
+
     /// Nothing but the end of the run.
     pub(crate) fn until(until: Option<&str>) -> Self {
         Self {

@@ -29,9 +29,8 @@ def save(run: xr.Dataset, path: str | PathLike[str]) -> list[Path]:
     ``.nc`` is NetCDF with everything that the dataset holds, and takes the extra ``netcdf``;
     ``.csv`` and ``.parquet`` (extra ``parquet``) are tables of one row a sample, with columns such
     as ``span_tension[crank-to-cam] [N]``. Contacts that were logged go to a second table beside
-    it, ``run.events.csv``; where none were logged, what an earlier result left there is removed.
-    Parquet has unit, description and label of every column in its metadata, and the attributes of
-    the result as JSON under ``chaindrive``.
+    it, ``run.events.csv``. Parquet has unit, description and label of every column in its metadata,
+    and the attributes of the result as JSON under ``chaindrive``.
 
     Parameters
     ----------
@@ -83,17 +82,15 @@ def save(run: xr.Dataset, path: str | PathLike[str]) -> list[Path]:
         hint = "select one run, put time first by run.transpose('time', ...), or write NetCDF"
         raise ParameterError(message, "run", hint)
     make = _csv if file.suffix == ".csv" else _parquet
-    tables, beside = {"time": file}, file.with_suffix(f".events{file.suffix}")
+    tables = {"time": file}
     if "event" in run.dims:
-        tables["event"] = beside
+        tables["event"] = file.with_suffix(f".events{file.suffix}")
     # Both places are found fit, and packages imported, before one is written.
     places = [(NewFile(table), of) for of, table in tables.items()]
     made = [(place, make(_columns(run, of), run.attrs)) for place, of in places]
     for place, write in made:
         with place as part:
             write(part)
-    if "event" not in run.dims:
-        beside.unlink(missing_ok=True)
     return list(tables.values())
 
 

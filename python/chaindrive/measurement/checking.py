@@ -221,7 +221,7 @@ def _beside(
         problem = f"is in {unit or 'no unit'}, and the quantity in {quantity.unit}"
         return Corresponding(name, quantity, unit, ours, math.nan, problem)
     time = run["time"].to_numpy()
-    read = sensor.observe(quantity.of(run, sensor), time)
+    read = sensor.observe(quantity.of(run, sensor.link), time)
     theirs, spread = float(read.mean()), float(read.std())
     problem = _unlike(ours, _noise(data[name].to_numpy()), theirs, spread)
     return Corresponding(name, quantity, unit, ours, theirs, problem)

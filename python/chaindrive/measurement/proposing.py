@@ -289,7 +289,7 @@ def _at(
         turns = {str(shaft): f"{float(angle[-1] - angle[0]) / seconds!r} rad/s"}
     table = xr.Dataset(
         {
-            name: ("time", it.of(run, plain[name])[::_DENSER], {"units": it.unit})
+            name: ("time", it.of(run, plain[name].link)[::_DENSER], {"units": it.unit})
             for name, it in quantities.items()
         },
         coords={"time": ("time", run["time"].to_numpy()[::_DENSER], {"units": "s"})},

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from chaindrive.analysis.signal import recorded
 from chaindrive.channel import channels
 from chaindrive.errors import MeasurementError
-from chaindrive.measurement.sensor import Sensor
 
 __all__ = ["MeasuredQuantity", "guessed", "quantity_of"]
 
@@ -81,8 +80,10 @@ class MeasuredQuantity:
         """Whether its amplitude means nothing."""
         return not self.needs
 
-    def of(self, run: xr.Dataset, sensor: Sensor) -> _Floats:
-        """Return the quantity of a run, as it is before the sensor reads it, (time,) [SI].
+    def of(self, run: xr.Dataset, link: int | None) -> _Floats:
+        """Return the quantity of a run, as it is before a sensor reads it, (time,) [SI].
+
+        A gauge that travels with the chain is on a link; where that is not known, on the first.
 
         Raises
         ------
@@ -92,12 +93,12 @@ class MeasuredQuantity:
             There is no such place, or several and none is named.
         """
         recorded(run, *self.needs)
-        columns = [self._column(run[name], sensor) for name in self.needs]
+        columns = [self._column(run[name], link) for name in self.needs]
         if self.name in _DERIVED:
             return _DERIVED[self.name].make(run["time"].to_numpy(), *columns)
         return columns[0]
 
-    def _column(self, channel: xr.DataArray, sensor: Sensor) -> _Floats:
+    def _column(self, channel: xr.DataArray, link: int | None) -> _Floats:
         others = [str(dim) for dim in channel.dims if dim != "time"]
         if not others:
             return channel.to_numpy().astype(float)
@@ -105,8 +106,7 @@ class MeasuredQuantity:
         labels = [str(it) for it in channel[dim].to_numpy()]
         label = self.label
         if label is None and dim == "link":
-            # Links are alike: a gauge whose link is unknown is on the first one.
-            label = str(sensor.link or 0)
+            label = str(link or 0)
         if label is None and len(labels) == 1:
             label = labels[0]
         if label not in labels:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from chaindrive.errors import MeasurementError
 from chaindrive.extras import extra
 from chaindrive.measurement.amount import amount, is_number
+from chaindrive.measurement.quantities import quantity_of
 from chaindrive.measurement.units import unit_of
 
 __all__ = ["NUISANCES", "Sensor"]
@@ -128,9 +129,6 @@ class Sensor:
             return unit_of(self.unit).si
         if self.quantity is None:
             return None
-        # Quantities know sensors.
-        from chaindrive.measurement.quantities import quantity_of
-
         unit = quantity_of(self.quantity).unit
         # Of a tensioner it is that of its kind, `m or rad`.
         return None if " or " in unit else unit or None

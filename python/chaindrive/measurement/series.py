@@ -132,7 +132,7 @@ def simulated_series(
     """
     time = run["time"].to_numpy()
     # The last sample stands where the run ended, up to a step after its place.
-    even, values = longest_even(time[:-1], quantity.of(run, sensor)[:-1])
+    even, values = longest_even(time[:-1], quantity.of(run, sensor.link)[:-1])
     # A record may be longer than the run, and begin after the sensor was set to zero.
     later = float(np.mean(beside.time)) - float(np.mean(even - even[0]))
     read = sensor.observe(values, even, later)

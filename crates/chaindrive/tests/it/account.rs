@@ -145,6 +145,8 @@ fn numbers(summary: &Summary) -> Vec<f64> {
         numbers.extend(both(&it.travel));
     }
     numbers.extend(both(&summary.link_tension()));
+    numbers.extend([summary.energy_supplied(), summary.energy_dissipated()]);
+    numbers.push(summary.duration());
     for span in summary.steadiness().into_iter().flatten() {
         for it in [span.mean, span.deviation, span.p1, span.p99] {
             numbers.extend([it.value, it.half_width]);

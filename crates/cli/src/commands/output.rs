@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use chaindrive::record::{Existing, Provenance, ZarrSink, take_over};
-use chaindrive::{Channel, Checkpoint, End, EventKinds, NewFile, Simulation, Sink};
+use chaindrive::{Channel, Checkpoint, End, NewFile, Simulation, Sink};
 use clap::{Args, ValueEnum};
 
 use crate::csv::{CsvWriter, RunClaims};
@@ -131,6 +131,16 @@ impl Target {
         )))
     }
 
+    /// Refuses a place that has none for contacts.
+    pub(crate) fn for_contacts(&self) -> Result<(), Failure> {
+        if matches!(self, Self::Stream) {
+            let message =
+                "--events: standard output takes one table; give -o run.csv or -o run.zarr";
+            return Err(Failure::Argument(message.to_owned()));
+        }
+        Ok(())
+    }
+
     /// The place, still to be begun; that of a table is claimed.
     pub(crate) fn output(self, existing: Existing) -> Result<Output, Failure> {
         Ok(match self {
@@ -199,11 +209,7 @@ impl Sink for Output {
                 *self = Self::Csv(Box::new(writer));
             }
             Self::NewStream => {
-                if provenance.run.events != EventKinds::default() {
-                    let message =
-                        "--events: standard output takes one table; give -o run.csv or -o run.zarr";
-                    return Err(Failure::Argument(message.to_owned()));
-                }
+                // Contacts that the scene alone asks for have no place there.
                 let stream = Stream::begin(simulation, channels)?;
                 *self = Self::Stream(Box::new(stream));
             }

@@ -109,6 +109,9 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
     if arguments.json && page == Page::Aside {
         return Err(Failure::Argument(ONE_DOCUMENT.to_owned()));
     }
+    if arguments.run.asks_for_contacts() {
+        target.for_contacts()?;
+    }
     let mut request = arguments.run.apply(&arguments.scene.load(interrupted)?)?;
     let scene = request.scene.name().to_owned();
     let notes = arguments.scene.notes(&request.scene);
@@ -128,13 +131,17 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
         request = request.without_estimate();
     }
     let mut result = target.output(arguments.place.existing()?)?;
-    let terminal = Terminal::new(arguments.telling.quiet, interrupted);
+    let terminal = match arguments.json {
+        true => Terminal::listening(interrupted),
+        false => Terminal::new(arguments.telling.quiet, interrupted),
+    };
     let report = execute(&request, &mut result, &terminal);
     let report = report.map_err(|error| not_run(error, &scene))?;
-    drop(terminal);
+    let foretold = terminal.foretold.into_inner();
     if arguments.json {
         let clashes = report.simulation.assembled().warnings.iter();
-        let warnings = notes.into_iter().chain(clashes.map(ToString::to_string));
+        let clashes = clashes.map(ToString::to_string);
+        let warnings = notes.into_iter().chain(foretold).chain(clashes);
         answer(&Answer {
             scene: scene.clone(),
             status: match report.stop {
@@ -216,10 +223,14 @@ fn ended(report: Report, scene: &str, strict: Option<Strictness>) -> Result<(), 
     }
 }
 
-/// Somebody at a terminal: sees the bar, may press Ctrl-C.
+/// Somebody at a terminal: sees the bar and notes, may press Ctrl-C.
 pub(super) struct Terminal<'a> {
     progress: RefCell<Progress>,
     interrupted: &'a dyn Fn() -> bool,
+    /// Whether notes are told at once.
+    tells: bool,
+    /// Notes.
+    foretold: RefCell<Vec<String>>,
 }
 
 impl<'a> Terminal<'a> {
@@ -227,6 +238,16 @@ impl<'a> Terminal<'a> {
         Self {
             progress: RefCell::new(Progress::new(quiet)),
             interrupted,
+            tells: !quiet,
+            foretold: RefCell::default(),
+        }
+    }
+
+    /// A program: sees no bar, and is told notes in the answer.
+    fn listening(interrupted: &'a dyn Fn() -> bool) -> Self {
+        Self {
+            tells: false,
+            ..Self::new(false, interrupted)
         }
     }
 }
@@ -250,7 +271,11 @@ impl Onlooker for Terminal<'_> {
     }
 
     fn foretell(&self, sentence: &str) {
-        say(format_args!("note: {sentence}"));
+        let note = format!("note: {sentence}");
+        if self.tells {
+            say(&note);
+        }
+        self.foretold.borrow_mut().push(note);
     }
 }
 

@@ -225,6 +225,34 @@ fn results_are_not_overwritten_unasked() {
     assert!(at.join("notes.zarr/thesis.tex").exists());
 }
 
+/// Samples of another run stand where contacts of this one would: nobody has named that place.
+#[test]
+fn samples_in_the_place_of_contacts_stay() {
+    let folder = folder();
+    let at = folder.path();
+    let ring = ["run", "spinning_ring", "--until", "1 ms", "-q", "-o"];
+    assert_eq!(run(at, &[&ring[..], &["ring.events.csv"]].concat()).0, 0);
+    let samples = fs::read(at.join("ring.events.csv")).unwrap();
+    let (code, _, err) = run(at, &[&ring[..], &["ring.csv", "--overwrite"]].concat());
+    assert_eq!(code, 3, "{err}");
+    assert_eq!(fs::read(at.join("ring.events.csv")).unwrap(), samples);
+}
+
+/// Contacts that the scene alone asks for have no place on standard output, and stop nobody.
+#[test]
+fn standard_output_has_samples_alone() {
+    let folder = folder();
+    let at = folder.path();
+    let line =
+        "run bicycle_slack --until 0.1ms --run-in 0 --no-error --set run.events=[\"teeth\"] -o -";
+    let (code, out, err) = run(at, &words(line));
+    assert_eq!(code, 0, "{err}");
+    assert!(out.starts_with("time [s]"), "{out}");
+    let (code, _, err) = run(at, &words(&format!("{line} --events teeth")));
+    assert_eq!(code, 2);
+    assert!(err.contains("one table"), "{err}");
+}
+
 /// A shaft under a torque that no machine has: the sample at t = 0 is all there is.
 #[test]
 fn a_failing_run_keeps_its_samples_and_exits_1() {

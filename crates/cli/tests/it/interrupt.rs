@@ -40,6 +40,25 @@ fn interrupted_it_ends_the_result_and_the_summary() {
     assert!(about["samples"].as_u64().unwrap() >= seen);
 }
 
+/// What is foretold of a long run stands in the answer of JSON, and nowhere if nobody wants to hear it.
+#[test]
+fn notes_do_not_stand_beside_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    for (option, told) in [("--json", true), ("--quiet", false)] {
+        let store = folder.path().join(option).with_extension("zarr");
+        let line = format!("run spinning_ring --until 1e6 --every 0.1s --no-error {option} -o");
+        let arguments = [&words(&line)[..], &[store.to_str().unwrap()]].concat();
+        let child = crate::command_line::start(folder.path(), &arguments);
+        wait_for_samples(&store);
+        signal(&child, "-INT");
+        let output = child.wait_with_output().unwrap();
+        let err = String::from_utf8(output.stderr).unwrap();
+        assert!(!err.contains("note:"), "{err}");
+        let out = String::from_utf8(output.stdout).unwrap();
+        assert_eq!(out.contains("note: the run will take about"), told, "{out}");
+    }
+}
+
 #[test]
 fn interrupted_it_closes_the_table() {
     let folder = tempfile::tempdir().unwrap();
