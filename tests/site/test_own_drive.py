@@ -41,6 +41,17 @@ def test_any_legal_plan_tells_which_links_close_it(page):
     moves(page)
 
 
+def test_a_load_that_follows_the_teeth_is_shown(page):
+    """Defect: the field kept the torque of before, and the scene had the other."""
+    page.click("#own")
+    laid(page)
+    torque = page.get_by_label("torque in N m of driven")
+    before = float(torque.input_value())
+    write_cell(page, "teeth of driven", 76)
+    assert float(torque.input_value()) == page.evaluate("lab.lab.own.plan.wheels[1].value")
+    assert float(torque.input_value()) > before
+
+
 @pytest.mark.parametrize(
     ("label", "value", "words"),
     [

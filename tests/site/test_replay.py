@@ -83,6 +83,19 @@ def test_it_plays_and_pauses(page):
     assert page.evaluate("replay.frame") == stopped
 
 
+def test_space_presses_the_button_that_has_the_focus(page):
+    """After a click it plays again. Defect: it played whatever the focus was on."""
+    theme = "document.documentElement.dataset.theme"
+    before = page.evaluate(theme)
+    page.focus("#theme")
+    page.keyboard.press("Space")
+    assert page.evaluate(theme) != before
+    page.click("#theme")
+    page.keyboard.press("Space")
+    assert page.evaluate(theme) == before
+    assert page.evaluate("replay.playing")
+
+
 def test_it_scrubs_by_slider_keys_and_plot(page):
     page.evaluate(
         "() => { const it = document.getElementById('scrub'); it.value = 2500; "

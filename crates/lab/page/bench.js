@@ -26,18 +26,18 @@ class Errand {
 
 /** Finds how long waveforms of a drive can be believed, following it for some time [s]. */
 async function findHorizon(lab, follow) {
-  const { opened, given } = lab;
+  const { given } = lab;
   // What was found before stands until more is known.
   if (!lab.horizon?.sentence) lab.horizon = { follow, busy: true };
   tellHorizon(lab);
   try {
     const found = await lab.horizonErrand.run('horizon', { text: given.text, name: given.name, follow });
-    if (opened !== lab.opened) return;
+    if (given !== lab.given) return;
     lab.horizon = { follow, ...found };
     // Beyond what was followed the time is extrapolated, and marked all the same.
     lab.scrolls.horizon = found.time;
   } catch (error) {
-    if (opened !== lab.opened || error.ended) return;
+    if (given !== lab.given || error.ended) return;
     lab.horizon = { follow, sentence: error.message, time: null, failed: true };
   }
   lab.dirty = true;
@@ -66,13 +66,13 @@ function firstFollow({ facts, rate }) {
 
 /** Seeks the horizon of a drive that has just been started. */
 function seekHorizon(lab) {
-  const { opened } = lab;
+  const { given } = lab;
   lab.horizonErrand.stop();
   Object.assign(lab, { horizon: null, rate: null });
   lab.scrolls.horizon = null;
-  byId('horizon').textContent = '';
+  for (const id of ['horizon', 'horizon-sentence', 'horizon-of']) byId(id).textContent = '';
   setTimeout(() => {
-    if (opened === lab.opened && lab.ready) findHorizon(lab, firstFollow(lab));
+    if (given === lab.given) findHorizon(lab, firstFollow(lab));
   }, BEFORE_HORIZON);
 }
 
@@ -89,6 +89,8 @@ function tellHorizon(lab) {
   }
   if (horizon.failed) {
     text.textContent = `How long waveforms can be believed is not known: ${horizon.sentence}`;
+    byId('horizon-sentence').textContent = text.textContent;
+    byId('horizon-of').textContent = '';
     return;
   }
   byId('further').hidden = false;

@@ -58,7 +58,7 @@ function liveInputs(facts) {
     }
     const { at } = carrier.plunger ?? {};
     const lever = turns && at ? Math.hypot(at[0] - carrier.pivot[0], at[1] - carrier.pivot[1]) : 1;
-    const size = 2 * ((push.preload || 100) * lever);
+    const size = 2 * Math.abs(push.preload || 100) * lever;
     inputs.push({
       group: 'Tensioners', key: `force ${name}`, label: `${turns ? 'torque' : 'force'} on ${name}`, hint: 'beside its own push; positive where that pushes',
       unit: turns ? 'N m' : 'N', factor: 1, range: [-size, size], start: 0,
@@ -178,7 +178,8 @@ class Sliders {
     row.append(name, back, slider, number, sign);
     // A start that has been changed by an earlier slider is still that of the scene as opened.
     const start = before?.start ?? input.start;
-    Object.assign(input, { start, value: before && !input.path ? before.value : input.start, slider, number, back });
+    // `value` is what a slider shows, `acts` what the drive has taken.
+    Object.assign(input, { start, acts: input.start, value: before && !input.path ? before.value : input.start, slider, number, back });
     this.inputs.set(input.key, input);
     this.show(input);
     const take = (text, done) => {
@@ -214,6 +215,12 @@ class Sliders {
     slider.value = factor * value;
     number.value = +(factor * value).toPrecision(5);
     back.style.visibility = Math.abs(value - start) > 1e-9 * Math.max(Math.abs(start), 1e-9) ? 'visible' : 'hidden';
+  }
+
+  /** Shows what acts again, in place of a value that was not taken. */
+  takeBack(input) {
+    input.value = input.acts;
+    this.show(input);
   }
 
   /** Takes the last change back. */

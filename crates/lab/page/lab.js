@@ -102,6 +102,8 @@ class Lab {
     if (sameCurves) this.scrolls.keep(before, 'before the start anew');
     if (!keep) this.sliders.forget();
     this.sliders.open(liveInputs(facts), anewInputs(facts));
+    // Until a state is kept one goes back to the start.
+    this.safe = this.withInputs({});
     if (!keep) this.setPace(gentlePace(facts));
     for (const input of this.sliders.changes.filter((it) => !it.path)) this.change(input);
     this.take(started);
@@ -155,7 +157,7 @@ class Lab {
     this.core = this.startCore();
     this.asked = false;
     this.opened += 1;
-    const { given, safe } = this;
+    const { given } = this;
     const why = error ? `The module stopped: ${error.message}.` : 'Stopped.';
     if (!given) {
       tell(`${why} Choose another drive.`, 'bad');
@@ -168,20 +170,54 @@ class Lab {
       return;
     }
     if (error) this.failed = performance.now();
-    const opened = this.opened;
     try {
-      const started = await this.busy('Assembling anew', this.core.ask('start', given));
-      const back = safe ? await this.core.ask('restore', { bytes: safe.bytes }) : started;
-      if (opened !== this.opened) return;
-      this.ready = true;
-      this.history.cut(back.time);
-      this.take(back);
-      tell(`${why} A new one goes on from t = ${quantity(back.time, 's', 4)}.`, 'doubt');
+      if (!await this.startAgain()) return;
+      tell(`${why} A new one goes on ${this.fromNow()}`, 'doubt');
       if (this.playing) this.tick();
     } catch (second) {
       this.ready = false;
       tell(`${why} ${second.message}`, 'bad');
     }
+  }
+
+  /** Starts the drive of before again, from where it was kept last; tells whether it did: another may have been opened meanwhile. */
+  async startAgain() {
+    const { given, safe, opened } = this;
+    const started = await this.busy('Assembling anew', this.core.ask('start', given));
+    const back = safe.bytes ? await this.core.ask('restore', { bytes: safe.bytes }) : started;
+    if (opened !== this.opened) return false;
+    Object.assign(this, { ready: true, asked: false });
+    this.takeBack(safe, back);
+    return true;
+  }
+
+  /** Words for the time that was gone back to. */
+  fromNow() {
+    return `from t = ${quantity(this.time, 's', 4)}, with the inputs of that time.`;
+  }
+
+  /** Takes a state that was gone back to; sliders show what acts there. */
+  takeBack({ acting, moves }, back) {
+    this.history.cut(back.time);
+    this.pending.clear();
+    this.moves = new Map(moves);
+    for (const [input, value] of acting) {
+      input.acts = value;
+      this.sliders.takeBack(input);
+    }
+    this.take(back);
+  }
+
+  /** The state now, from which one can go on later. */
+  async snapshot(given) {
+    // Answers come in the order of questions: what has been taken until now acts on this state, and nothing else.
+    return this.withInputs(await this.core.ask('snapshot', given));
+  }
+
+  /** A state, with the values of inputs and the ways of centres that act on it. */
+  withInputs(state) {
+    const live = [...this.sliders.inputs.values()].filter((it) => !it.path);
+    return { ...state, acting: live.map((it) => [it, it.acts]), moves: new Map(this.moves) };
   }
 
   /** Takes what the worker has computed. */
@@ -228,7 +264,7 @@ class Lab {
       this.late = !answer.reached;
       if (!(now - this.keptSafe < SAFE)) {
         this.keptSafe = now;
-        this.safe = await this.core.ask('snapshot');
+        this.safe = await this.snapshot();
       }
     } catch (error) {
       if (opened === this.opened && !error.ended) {
@@ -261,31 +297,35 @@ class Lab {
     const changed = [...this.pending.values()];
     this.pending.clear();
     for (const input of changed) {
-      if (input.move) await this.moveCentre(input);
-      else for (const [what, given] of input.set(input.value)) await this.core.ask(what, given).catch((error) => this.refuse(input, error));
+      const taken = input.move ? this.moveCentre(input) : this.setValue(input);
+      await taken.catch((error) => this.refuse(input, error));
     }
   }
 
-  /** Moves a centre on its way; while it is on one the next way waits. */
+  /** Has the drive take the value of a slider. */
+  async setValue(input) {
+    const { value } = input;
+    for (const [what, given] of input.set(value)) await this.core.ask(what, given);
+    input.acts = value;
+  }
+
+  /** Moves a centre on its way; until that ends the next way waits. */
   async moveCentre(input) {
-    const way = this.moves.get(input.key) ?? { at: 0, until: -1 };
-    if (this.time < way.until) {
+    if (this.time < this.moves.get(input.key)) {
       this.pending.set(input.key, input);
       return;
     }
-    const by = input.value - way.at;
+    const { value } = input;
+    const by = value - input.acts;
     if (by === 0) return;
-    const until = await this.core.ask('move', { ...input.move, by, over: input.over }).catch((error) => this.refuse(input, error));
-    if (until) this.moves.set(input.key, { at: input.value, until });
+    this.moves.set(input.key, await this.core.ask('move', { ...input.move, by, over: input.over }));
+    input.acts = value;
   }
 
-  /** Takes a slider back that the drive refuses. */
+  /** Takes a slider back whose value the drive refuses. */
   refuse(input, error) {
     if (error.ended) return;
-    input.value = input.start;
-    this.sliders.show(input);
-    input.slider.disabled = true;
-    input.number.disabled = true;
+    this.sliders.takeBack(input);
     tell(`${input.label}: ${error.message}`, 'doubt');
   }
 
@@ -326,15 +366,13 @@ class Lab {
       await this.start(about, true);
       if (!this.film.isWarned) tell(`Started anew${note ? ` ${note}` : ''}. The curves before stand in grey.`);
     } catch (error) {
-      if (error.ended) return;
       Object.assign(this, { changes: before, closing });
-      await this.goBack(error);
       for (const [place] of wanted) {
         const input = this.sliders.inputs.get(place);
-        if (!input) continue;
-        input.value = before.get(place) ?? input.start;
-        this.sliders.show(input);
+        if (input) this.sliders.takeBack(input);
       }
+      // A worker that has ended is told of and replaced elsewhere.
+      if (!error.ended) await this.guarded(this.goBack(error));
     }
   }
 
@@ -342,13 +380,8 @@ class Lab {
   async goBack(error) {
     tell(told(error), 'bad');
     if (this.ready || !this.given) return;
-    const { safe, given, opened } = this;
-    const started = await this.busy('Assembling', this.core.ask('start', given));
-    const back = safe ? await this.core.ask('restore', { bytes: safe.bytes }) : started;
-    if (opened !== this.opened) return;
-    Object.assign(this, { ready: true, asked: false });
-    this.history.cut(back.time);
-    this.take(back);
+    if (!await this.startAgain()) return;
+    tell(`${told(error)}\nThe drive before goes on ${this.fromNow()}`, 'bad');
     this.playing = false;
     this.play();
   }
@@ -371,8 +404,8 @@ class Lab {
   async keepState() {
     if (!this.ready) return;
     this.pause();
-    await this.guarded(this.core.ask('snapshot', { anew: true }).then((kept) => {
-      this.kept = { ...kept, inputs: [...this.sliders.inputs.values()].map((it) => [it.key, it.value]), moves: new Map(this.moves) };
+    await this.guarded(this.snapshot({ anew: true }).then((kept) => {
+      this.kept = kept;
       byId('back-to').disabled = false;
       tell(`Kept as A at t = ${quantity(kept.time, 's', 4)}. Play on, come back to A, change something: its curves stand in grey beside B.`);
     }));
@@ -383,17 +416,9 @@ class Lab {
     this.pause();
     const { kept } = this;
     const curves = this.history.copyFrom(kept.time);
-    await this.guarded(this.core.ask('restore', { bytes: kept.bytes.slice() }).then((answer) => {
-      this.history.cut(answer.time);
+    await this.guarded(this.core.ask('restore', { bytes: kept.bytes }).then((back) => {
+      this.takeBack(kept, back);
       this.scrolls.keep(curves.length > 1 ? curves : null, `A, from t = ${quantity(kept.time, 's', 4)} on`);
-      this.moves = new Map(kept.moves);
-      for (const [key, value] of kept.inputs) {
-        const input = this.sliders.inputs.get(key);
-        if (!input || input.path) continue;
-        input.value = value;
-        this.sliders.show(input);
-      }
-      this.take(answer);
     }));
   }
 

@@ -63,12 +63,15 @@ class OwnDrive {
   change(rows = true) {
     this.plan.links = null;
     this.notice = '';
+    // What is written in one field may move the value of another, as teeth move the load.
     if (rows) this.fill();
+    else for (const show of this.shows) show();
     this.lay();
   }
 
   fill() {
     const { plan } = this;
+    this.shows = [];
     byId('own-wheels').replaceChildren(...plan.wheels.map((wheel) => this.wheelRow(wheel)));
     byId('own-guides').replaceChildren(...plan.guides.map((guide) => this.guideRow(guide)));
     const moved = byId('own-moved');
@@ -79,9 +82,12 @@ class OwnDrive {
   /** A field of a row, `scale` times what is kept. */
   field(it, key, label, { scale = 1, least, most, whole, text, after } = {}) {
     const input = document.createElement('input');
-    const shown = () => (text ? it[key] : +(scale * it[key]).toFixed(2));
+    const show = () => {
+      input.value = text ? it[key] : +(scale * it[key]).toFixed(2);
+    };
+    this.shows.push(show);
     Object.assign(input, text ? { type: 'text', maxLength: 40 } : { type: 'number', step: whole ? 1 : 'any' });
-    input.value = shown();
+    show();
     input.setAttribute('aria-label', `${label} of ${it.name}`);
     input.onchange = () => {
       const value = text ? input.value.trim() : Number(input.value) / scale;
@@ -96,8 +102,8 @@ class OwnDrive {
         const bounds = [least === undefined ? '' : ` from ${scale * least}`, most === undefined ? '' : ` to ${scale * most}`].join('');
         this.notice = `${label} of ${it.name}: ${text ? 'a name that no other has' : `a number${bounds}`}, so it stays as it was.`;
         this.say(this.notice, 'bad');
+        show();
       }
-      input.value = shown();
     };
     return input;
   }

@@ -80,25 +80,11 @@ function listenToLab(lab) {
     b: () => lab.goBackToKept(), '+': () => zoom(1.4), '=': () => zoom(1.4), '-': () => zoom(1 / 1.4), 0: whole, f: followOrNot,
     e: () => lab.guarded(editScene(lab)), o: () => lab.own.show(), d: () => lab.changeTheme(), '?': () => byId('help').showModal(),
   };
+  listenToKeys(actions);
   document.addEventListener('keydown', (event) => {
-    if (document.querySelector('dialog[open]')) return;
-    const { tagName, type } = event.target;
-    const isWritten = tagName === 'TEXTAREA' || (tagName === 'INPUT' && type !== 'range');
-    if ((event.ctrlKey || event.metaKey) && event.key === 'z' && !isWritten) {
-      event.preventDefault();
-      undo();
-    }
-    // Lists, numbers and pressed buttons keep their own keys.
-    if (event.ctrlKey || event.metaKey || event.altKey || isWritten || tagName === 'SELECT') return;
-    if (event.key === ' ' && ['BUTTON', 'SUMMARY'].includes(tagName)) return;
-    const action = actions[event.key];
-    if (!action) return;
+    if (!(event.ctrlKey || event.metaKey) || event.key !== 'z' || isWritten(event.target) || document.querySelector('dialog[open]')) return;
     event.preventDefault();
-    action();
-  });
-  // After a click the keys are those of the page again; whoever came by the keyboard keeps his place.
-  document.addEventListener('click', (event) => {
-    if (event.detail) event.target.closest('button')?.blur();
+    undo();
   });
   byId('help').querySelector('table').append(...LAB_KEYS.map((cells) => {
     const row = document.createElement('tr');
@@ -187,7 +173,8 @@ async function start() {
     return option;
   }));
   byId('preset').firstChild.disabled = true;
-  const openPreset = (name) => open({ preset: name }).catch((error) => tell(error.message, 'bad'));
+  // What is wrong has been told.
+  const openPreset = (name) => open({ preset: name }).catch(() => {});
   byId('preset').onchange = (event) => openPreset(event.target.value);
 
   /** The scene of the page or of its address; mistakes in it are shown where they stand. */
@@ -206,7 +193,10 @@ async function start() {
     return open(given).catch((error) => lab.editor.show(given, error.problems ?? [{ message: error.message }]));
   };
   window.addEventListener('hashchange', () => {
-    if (lab.linked !== window.location.hash) openGiven();
+    if (lab.linked === window.location.hash) return;
+    // The page goes on to another drive: coming back opens that of the link.
+    lab.linked = null;
+    openGiven();
   });
   await openGiven();
   byId('wait').hidden = true;

@@ -206,7 +206,7 @@ function listenToControls(player) {
   const hasContacts = film.arrays.event_start || film.arrays.contact_force;
   byId('contact').disabled = !hasContacts;
 
-  const actions = {
+  listenToKeys({
     ' ': () => player.toggle(),
     ArrowLeft: (shift) => player.seek(player.frame - (shift ? 100 : 1)),
     ArrowRight: (shift) => player.seek(player.frame + (shift ? 100 : 1)),
@@ -224,14 +224,5 @@ function listenToControls(player) {
     d: () => player.changeTheme(),
     i: () => byId('account').hidden || open('story'),
     '?': () => open('help'),
-  };
-  document.addEventListener('keydown', (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector('dialog[open]')) return;
-    // Lists keep their own keys.
-    if (event.target.tagName === 'SELECT') return;
-    const action = actions[event.key];
-    if (!action) return;
-    event.preventDefault();
-    action(event.shiftKey);
   });
 }

@@ -60,6 +60,27 @@ function tellRoller(view, roller, touched = null) {
   place.replaceChildren(table);
 }
 
+/** Whether a text or a number is written in an element. */
+const isWritten = ({ tagName, type }) => tagName === 'TEXTAREA' || (tagName === 'INPUT' && type !== 'range');
+
+/** Keys of the page, each with what it does. Lists and fields keep their own, and a button that has the focus keeps the space bar. */
+function listenToKeys(actions) {
+  document.addEventListener('keydown', (event) => {
+    const { key, target } = event;
+    if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector('dialog[open]')) return;
+    if (isWritten(target) || target.tagName === 'SELECT') return;
+    if (key === ' ' && ['BUTTON', 'SUMMARY'].includes(target.tagName)) return;
+    const action = actions[key];
+    if (!action) return;
+    event.preventDefault();
+    action(event.shiftKey);
+  });
+  // After a click the keys are those of the page again; whoever came by the keyboard keeps his place.
+  document.addEventListener('click', (event) => {
+    if (event.detail) event.target.closest('button')?.blur();
+  });
+}
+
 /** Mouse, pen and fingers on the picture; what `player.view` shows may be another drive later. A player that can `pull` takes what is dragged at a roller. */
 function listenToPicture(canvas, player) {
   const fingers = new Map();
