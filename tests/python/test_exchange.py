@@ -323,11 +323,6 @@ def test_what_is_no_table_is_refused(run: xr.Dataset, change: str, tmp_path: Pat
     assert not list(tmp_path.iterdir())
 
 
-def test_contacts_of_an_earlier_result_do_not_stay(run: xr.Dataset, tmp_path: Path) -> None:
-    assert len(cd.save(run, tmp_path / "run.csv")) == 2
-    assert cd.save(run.drop_dims("event"), tmp_path / "run.csv") == list(tmp_path.iterdir())
-
-
 def test_parquet_knows_units_and_where_it_is_from(run: xr.Dataset, tmp_path: Path) -> None:
     parquet = pytest.importorskip("pyarrow.parquet")
     table, events = cd.save(run, tmp_path / "run.parquet")

@@ -131,9 +131,10 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &dyn Fn() -> bool) -> Resu
         request = request.without_estimate();
     }
     let mut result = target.output(arguments.place.existing()?)?;
-    let terminal = match arguments.json {
-        true => Terminal::listening(interrupted),
-        false => Terminal::new(arguments.telling.quiet, interrupted),
+    let terminal = if arguments.json {
+        Terminal::listening(interrupted)
+    } else {
+        Terminal::new(arguments.telling.quiet, interrupted)
     };
     let report = execute(&request, &mut result, &terminal);
     let report = report.map_err(|error| not_run(error, &scene))?;
