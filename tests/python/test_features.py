@@ -84,6 +84,9 @@ def test_run_and_record_have_the_same_features_where_one_resolves_an_order_more(
     ours, theirs = ([it.name for it in features_of(how, one)] for one in (None, run))
     assert ours == theirs
     assert ours[-1] == "order 38"
+    # At four times the speed the first order has 1.8 samples a period.
+    with pytest.raises(cd.MeasurementError, match="order 19 of driver has less than two samples"):
+        features_of(how, turning(1200.0, 2800.0))
 
 
 def of_strand(run: xr.Dataset, turns: str, count: int = 250) -> xr.Dataset:

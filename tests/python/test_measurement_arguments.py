@@ -1,4 +1,4 @@
-"""What the functions of measurements refuse of their arguments, before anything is simulated."""
+"""Arguments that the functions of measurements refuse before any run."""
 
 from pathlib import Path
 from typing import Any
@@ -24,7 +24,7 @@ TABLE = {"kind": "speed-table", "times": [0.0, 1.0], "speeds": ["300 rpm", "310 
 
 
 def fit_of(drive: cd.Drive, path: str, value: float) -> xr.Dataset:
-    """What a prediction takes of a fit of one parameter."""
+    """A fit of one parameter, as far as a prediction reads it."""
     return xr.Dataset(
         {
             "estimate": ("parameter", [value]),

@@ -229,7 +229,7 @@ def test_a_column_of_texts_is_no_date_and_told(heading: str, cell: str, tmp_path
         data = cd.measured(path)
     assert list(data.data_vars) == ["b"]
     assert data.attrs["findings"] == ["not-a-number"]
-    # Who names other channels knows.
+    # A reader who named other channels knows.
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         cd.measured(path, channels=["b"])

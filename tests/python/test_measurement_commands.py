@@ -147,6 +147,7 @@ def test_assumptions_are_drawn_and_ranked(place: Path, capsys: pytest.CaptureFix
 
 def test_what_to_measure_next_is_told(place: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The channels of a rig file beside a quantity, at two operating points of one name each."""
+    # Three pitches at 300 rpm: less tells nothing.
     lengths = ["--until", "36 ms", "--record", "1 s", "--rate", "2 kHz"]
     slow = ["--excitation", "slow:sprockets.driver.motion.speed=300 rpm"]
     told = answer(

@@ -58,7 +58,7 @@ def test_every_channel_settles_what_it_sees(proposed: xr.Dataset) -> None:
 def test_a_longer_record_leaves_less() -> None:
     free = {LOAD: FREE[LOAD]}
     precise = {"strand": {"quantity": "span_tension[driven-driver]", "gain_uncertainty": 1e-5}}
-    # What a file would say of its numbers, and a name that no file could give, change nothing.
+    # Unit, scale and sign of a file change nothing, nor does a name with a slash.
     precise["N/S"] = precise["strand"] | {"unit": "kN", "scale": 50.0, "sign": -1}
     short, long = (
         cd.next_measurement(drive(), free, precise, until=0.05, record=it) for it in (0.05, "5 s")

@@ -342,12 +342,12 @@ impl TableClaim {
     }
 }
 
-/// Claims a place for a table, unless something else than one of ours is there.
+/// Claims a place for a table: an empty one, or that of an earlier table.
 pub(crate) fn claim(path: &Path, existing: Existing) -> Result<TableClaim, Failure> {
     claim_table(path, existing, &[TIME, VARIANT, EventColumn::Kind.name()])
 }
 
-/// Claims a place for a table, unless something else is there than one whose first column is one of some.
+/// Claims an empty place, or that of an earlier table with one of these first columns.
 fn claim_table(path: &Path, existing: Existing, firsts: &[&str]) -> Result<TableClaim, Failure> {
     let taken = |found, hint| Failure::Taken {
         path: path.display().to_string(),
@@ -384,7 +384,7 @@ fn claim_table(path: &Path, existing: Existing, firsts: &[&str]) -> Result<Table
     Ok(claimed)
 }
 
-/// Whether a file is empty, or begins with one of some columns.
+/// An empty file, or a table with one of these first columns.
 fn is_table(path: &Path, firsts: &[&str]) -> io::Result<bool> {
     let longest = firsts.iter().map(|first| first.len()).max().unwrap_or(0);
     let mut begin = Vec::new();

@@ -206,7 +206,7 @@ impl RunArguments {
         self.record.iter().any(|name| !name.trim().is_empty())
     }
 
-    /// Whether contacts are asked for, other than by the scene.
+    /// Contacts in an option, not in the scene alone.
     pub(crate) fn asks_for_contacts(&self) -> bool {
         self.events.iter().any(|name| !name.trim().is_empty())
     }

@@ -288,7 +288,7 @@ def _scene(run: xr.Dataset) -> dict[str, Any]:
 
 
 def _restitution(scene: Mapping[str, Any], sprocket: Mapping[str, Any]) -> float | None:
-    # What a sprocket says goes before what all teeth have.
+    # The contact of a sprocket goes before that of all teeth.
     for contact in (sprocket.get("contact", {}), scene.get("contact", {}).get("teeth", {})):
         if "film" in contact or "damping" in contact:
             return None

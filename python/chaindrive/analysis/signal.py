@@ -76,12 +76,12 @@ def signal(run: xr.Dataset, channel: str | xr.DataArray, at: dict[str, Any]) -> 
 
 
 def late(run: _Timed, after: float) -> _Timed:
-    """Return what a run or a signal holds from a time on [s].
+    """Return the part of a run or a signal from a time on [s].
 
     Raises
     ------
     ParameterError
-        That is less than two samples.
+        The part has less than two samples.
     """
     if isinstance(after, str):
         raise ParameterError(f"after = {after!r}, must be a time in s", "after", "a number")

@@ -23,9 +23,9 @@ class Amount(NamedTuple):
 
     value: float
     unit: str | None
-    """Unit of SI, ``"1"`` of a pure number; None where the number stood alone, and is in SI."""
+    """Unit of SI, ``"1"`` of a pure number; None of a bare number, which is in SI."""
     quantity: str
-    """What has this unit, with its article; empty where the number stood alone."""
+    """The quantity of this unit with its article, ``a force``; empty for a bare number."""
 
 
 def amount(given: Any, unit: str | None, name: str, *, is_difference: bool = False) -> float:
@@ -67,8 +67,8 @@ def read_amount(
     needed
         What is needed, for messages.
     is_difference
-        Whether it is the difference of two values, such as a standard deviation: 5 °C are 5 K then,
-        and not 278.15 K.
+        A difference of two values, such as a standard deviation: 5 °C are 5 K then, and not
+        278.15 K.
 
     Raises
     ------
@@ -98,12 +98,12 @@ def is_number(value: Any) -> TypeGuard[float]:
 
 
 def check_share(value: Any, name: str) -> None:
-    """Refuse what is no share between 0 and 1, such as a level of confidence.
+    """Refuse a level of confidence, or another share, outside (0, 1).
 
     Raises
     ------
     MeasurementError
-        It is none.
+        The value is no such share.
     """
     if not (is_number(value) and 0.0 < value < 1.0):
         raise MeasurementError(f"{name} = {value!r}, must be a number in (0, 1)", name)

@@ -17,7 +17,7 @@ from chaindrive.measurement.alignment import Aligned, in_angle, in_time
 from chaindrive.measurement.amount import check_share
 from chaindrive.measurement.bands import Band, Judgement, band_of, judged, numerical_error
 from chaindrive.measurement.blocks import Blocks, blocks_of, shared_length
-from chaindrive.measurement.correspondence import correspondence, other_speeds, reference_shaft
+from chaindrive.measurement.correspondence import correspondence, reference_shaft
 from chaindrive.measurement.lines import Line, mesh_lines
 from chaindrive.measurement.quantities import MeasuredQuantity
 from chaindrive.measurement.series import (
@@ -167,7 +167,6 @@ def compare(
     found = [
         _compared(run, data, pair, shaft, teeth, (align, level, telling)) for pair in pairs.items()
     ]
-    found[0].notes += [str(it) for it in other_speeds(run, data)]
     return _dataset(run, data, found, shaft, level)
 
 

@@ -15,7 +15,7 @@ from chaindrive.measurement.time_base import Finding
 
 __all__ = ["correspondence", "other_speeds", "reference_shaft"]
 
-#: Share by which speeds differ that are told (assumed): a motor slips by less.
+#: Difference of two speeds that is told, over the greater one [–] (assumed): motors slip by less.
 _APART = 0.05
 
 
@@ -53,7 +53,7 @@ def reference_shaft(run: xr.Dataset, data: xr.Dataset) -> str | None:
 def other_speeds(run: xr.Dataset, data: xr.Dataset) -> list[Finding]:
     """Return the sprockets that turn at another speed in the measurement than in the run.
 
-    Where one of both is not steady, nothing is said: a run may be another part of a run-up.
+    Unsteady speeds are left out: a run may be another part of a run-up.
     """
     if "sprocket_angle" not in run:
         return []

@@ -28,7 +28,7 @@ Row = Mapping[str, float]
 
 #: Variants of a part that an executor computes: what is lost when the program is killed [–].
 _PART = 32
-#: What reading a file raises that was cut off, or of which single bits are wrong.
+#: Errors of reading a file that is cut off, or has single bits wrong.
 _DAMAGES = (OSError, ValueError, KeyError, EOFError, RuntimeError, BadZipFile)
 
 

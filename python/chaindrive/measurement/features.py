@@ -121,7 +121,7 @@ def features_of(
             found.append(Feature(it.channel, name, blocks.estimate(name)))
         for order in it.orders:
             if not blocks.resolves(order):
-                message = f"order {order:g} of {it.shaft} has less than two samples in {it.channel}"
+                message = f"order {order:g} of {it.shaft} has less than two samples a period in {it.channel}"
                 raise MeasurementError(
                     message, it.channel, "narrower bounds of speeds, or a record of more samples"
                 )

@@ -113,12 +113,12 @@ def free_parameters(
 
 
 def check_free(free: Any) -> None:
-    """Refuse what is no mapping from paths to bounds.
+    """Refuse anything but a mapping from paths to bounds.
 
     Raises
     ------
     MeasurementError
-        It is none, or empty.
+        It is another thing, or empty.
     """
     if not isinstance(free, Mapping) or not free:
         message = "free is no mapping from paths to bounds"
@@ -130,7 +130,7 @@ def check_free(free: Any) -> None:
 def priors_of(
     priors: Mapping[str, tuple[Any, Any]], opened: Sequence[Opened]
 ) -> dict[str, tuple[float, float]]:
-    """Return mean and standard deviation of what is known of parameters, by path, in SI.
+    """Return mean and standard deviation of prior knowledge, by path, in SI.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def priors_of(
 def _amount(
     it: FreeParameter, drive: Drive, data: xr.Dataset, given: Any, *, is_difference: bool = False
 ) -> float:
-    """Return a finite number in SI of what a parameter is."""
+    """Return a finite number in the SI unit of a parameter."""
     if it.is_of_sensor:
         return _nuisance(data, it.path, given)
     found = read_amount(given, it.path, is_difference=is_difference)
@@ -180,7 +180,7 @@ def _amount(
 
 
 def check_unit(drive: Drive, path: str, unit: str, known: float) -> None:
-    """Refuse a unit that a value of a scene cannot be given in.
+    """Refuse a unit of another quantity than that of a value of a scene.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def check_unit(drive: Drive, path: str, unit: str, known: float) -> None:
     unit
         Unit of SI, ``"1"`` of a pure number.
     known
-        What the value may be [SI], so that nothing but the unit can be wrong.
+        A value that the scene takes [SI], so that nothing but the unit can be wrong.
 
     Raises
     ------
@@ -250,7 +250,7 @@ def _of_sensor(data: xr.Dataset, path: str, bounds: Any) -> FreeParameter:
 
 
 def _nuisance(data: xr.Dataset, path: str, given: Any) -> float:
-    """Return what a nuisance of a sensor is when it is given so [SI], as the sensor takes it."""
+    """Return the value of a nuisance [SI], read as its sensor reads it."""
     channel, _, name = path.removeprefix(_SENSORS).rpartition(".")
     sensor = sensor_of(data, channel)
     unit = str(data[channel].attrs["units"]) or sensor.unit

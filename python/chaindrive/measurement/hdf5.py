@@ -17,9 +17,9 @@ __all__ = ["read"]
 
 _Floats = NDArray[np.float64]
 
-#: What a time is called, the likelier names first.
+#: Names of a time, the likelier ones first.
 _TIMES = ("time", "t", "zeit", "timestamps")
-#: What it may be called where nothing else tells one.
+#: Names of a time where nothing else is one.
 _AXES = ("x",)
 _UNITS = ("units", "unit", "Unit")
 #: Attributes that tell an interval [s], and those that tell its inverse [Hz].

@@ -126,8 +126,8 @@ def alike(
 ) -> list[tuple[Optimum, Sides]]:
     """Return the other valleys that explain the record alike, each with its own sides.
 
-    What is left of t² there is ``t² − (χ²_v − χ²(θ̂))``. A valley within the sides of the best adds
-    nothing to them.
+    χ² may rise there by ``t² − (χ²_v − χ²(θ̂))``. A valley within the sides of the best is taken for
+    a part of it, and has none of its own.
     """
     optimum, sides = best
     low, high = (optimum.x + it * fit.half for it in (-sides.below, sides.above))
@@ -152,10 +152,10 @@ def reach_of(
     Parameters
     ----------
     fit, valleys
-        The fit, its best optimum and those that explain the record alike, with their sides; none
-        where the drive is taken for straight.
+        The fit; its best optimum and those that explain the record alike, with their sides, or none
+        of a straight drive.
     moved
-        What the best was moved by where all that is chosen was chosen anew (p,) [SI].
+        Move of the best optimum by a new choice of method, step and run-in (p,) [SI].
     covariance
         Σ, of a straight drive (p, p) [SI²].
     t

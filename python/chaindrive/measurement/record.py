@@ -38,7 +38,7 @@ _Samples: TypeAlias = tuple[str, NDArray[np.int64]]
 
 #: Attribute ``format`` of a measurement.
 FORMAT = "chaindrive measurement"
-#: What a time is called, the likelier names first.
+#: Names of a time, the likelier ones first.
 _TIMES = (
     *("time", "t", "zeit", "temps", "sec", "secs", "second", "seconds", "clock"),
     *("timestamp", "timestamps", "datetime", "date"),
@@ -189,7 +189,7 @@ def measured(
     coordinates = indexed(dimensions, {})
     for base in bases:
         coordinates[base].attrs.update({"units": "s", "long_name": "time"})
-    # Who names channels misses none of those that are left out.
+    # Columns left out are no loss to a reader who named channels.
     left_out = {name for _, name, _ in raw.notes} - {"", *(it.name for it in raw.channels)}
     unmissed = left_out if channels is not None else set()
     serious = [it for it in findings if it.kind not in _HARMLESS and it.channel not in unmissed]
@@ -291,7 +291,7 @@ def _clocks(raw: RawRecord, time: str | None) -> dict[int, RawChannel]:
     for channel in raw.channels:
         called = _called(channel)
         word = called.partition(" ")[0]
-        # Where nothing else is the time, what is called so and is in metres is told to be none.
+        # A `time` in metres is taken last, and refused with that reason.
         is_odd = channel.time is None and called == "time" and not _is_in_seconds(channel)
         if is_odd or _may_be_time(channel, word):
             rank = (is_odd, called != "time", not channel.unit, _TIMES.index(word))
@@ -391,14 +391,14 @@ def _bases(
 
 
 def _angle(base: str) -> str:
-    """Return what the angles of shafts are called along a base."""
+    """Return the name of the angles of shafts along a base."""
     return "sprocket_angle" + base.removeprefix("time")
 
 
 def _keys(names: Iterable[str], bases: Iterable[str], findings: list[Finding]) -> dict[str, str]:
-    """Return what every channel is called in the dataset, where some names are taken.
+    """Return the names of channels in the dataset, beside those that are taken.
 
-    What has a slash in its name cannot be saved as NetCDF.
+    NetCDF saves no name with a slash.
     """
     plain = {name: _core.one_line(name).replace("/", " ") for name in names}
     taken = {"sprocket", *bases, *map(_angle, bases)}

@@ -241,7 +241,7 @@ class Sensor:
 
 
 def _before(values: _Floats, samples: float) -> float:
-    """Return what a quantity was before its first value: its mean over so many samples."""
+    """Return the level of a quantity before its first value: its mean over some samples."""
     return float(values[: max(1, round(samples))].mean())
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from chaindrive import _core
+from chaindrive.measurement.correspondence import other_speeds
 from chaindrive.plot.units import in_trade
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ def _verdicts(
         words.append(f"The record: {data.attrs['findings_note']}.")
     if str(run.attrs.get("verdict")) == "distrusted":
         words.append("The run contradicts itself: its verdict is distrusted.")
+    words += [f"{it}." for it in other_speeds(run, data)]
     words += [note + "." for it in found for note in it.notes]
     return {
         "title": "against the measurement",

@@ -21,7 +21,7 @@ __all__ = ["read"]
 _LINES = 200
 _SEPARATORS = ("\t", ";", ",", "|", " ")
 _BLANK = {"", "nan", "na", "n/a", "null", "none", "inf", "-inf", "+inf", "-", "--", "---"}
-#: What separates thousands, beside a comma or a point that is not the decimal mark.
+#: Separators of thousands, beside the comma or point that is not the decimal mark.
 _GAPS = " \u00a0\u2009\u202f'’"
 #: Numbers whose thousands are separated, by their decimal mark.
 _GROUPED = {
@@ -30,7 +30,7 @@ _GROUPED = {
     )
     for decimal, other in ((".", ","), (",", "."))
 }
-#: How dates and times of day begin.
+#: The beginning of a date or a time of day.
 _MOMENT = re.compile(r"\d{1,4}(?P<mark>[-./:])(\d{1,2}|[A-Za-z]{3})[-./:]\d{1,4}")
 _TIMES_OF_DAY = ("%H:%M:%S", "%I:%M:%S %p")
 _DATES = {

@@ -226,7 +226,7 @@ def _by_encoder(how: Encoder, channel: RawChannel, shaft: str) -> _Floats:
             raise MeasurementError(
                 message, shaft, "give `wraps_at`, where it begins anew, such as 65536"
             )
-    # What falls by more than half of that between two samples began anew.
+    # A fall by more than half of that between two samples is a new beginning.
     return factor * np.unwrap(values, period=how.wraps_at or turn)
 
 

@@ -49,7 +49,7 @@ def validated(fit: Fit, best: Optimum, worth: Worth, level: float) -> Kept | Non
     if known.sum() == 0:
         nan = np.full(own.shape, np.nan)
         return Kept(errors.names, errors.values, simulated, nan, np.nan, "cannot tell")
-    # What the parameters may be off moves all of it together.
+    # Errors of the parameters move all of it together.
     jacobian, _ = fit.replicated(best.x, kept=True)
     covariance = errors.covariance + jacobian @ worth.covariance @ jacobian.T
     among = np.ix_(known, known)

@@ -131,7 +131,7 @@ impl Target {
         )))
     }
 
-    /// Refuses a place that has none for contacts.
+    /// Refuses standard output, which has no place for contacts.
     pub(crate) fn for_contacts(&self) -> Result<(), Failure> {
         if matches!(self, Self::Stream) {
             let message =
@@ -209,7 +209,7 @@ impl Sink for Output {
                 *self = Self::Csv(Box::new(writer));
             }
             Self::NewStream => {
-                // Contacts that the scene alone asks for have no place there.
+                // Contacts of the scene have no place there; those of an option were refused.
                 let stream = Stream::begin(simulation, channels)?;
                 *self = Self::Stream(Box::new(stream));
             }

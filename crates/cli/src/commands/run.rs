@@ -228,9 +228,9 @@ fn ended(report: Report, scene: &str, strict: Option<Strictness>) -> Result<(), 
 pub(super) struct Terminal<'a> {
     progress: RefCell<Progress>,
     interrupted: &'a dyn Fn() -> bool,
-    /// Whether notes are told at once.
+    /// Notes go to stderr as they come.
     tells: bool,
-    /// Notes.
+    /// Notes so far.
     foretold: RefCell<Vec<String>>,
 }
 

@@ -225,7 +225,7 @@ fn results_are_not_overwritten_unasked() {
     assert!(at.join("notes.zarr/thesis.tex").exists());
 }
 
-/// Samples of another run stand where contacts of this one would: nobody has named that place.
+/// The place of contacts follows from that of samples: another run's samples there stay.
 #[test]
 fn samples_in_the_place_of_contacts_stay() {
     let folder = folder();
@@ -238,7 +238,7 @@ fn samples_in_the_place_of_contacts_stay() {
     assert_eq!(fs::read(at.join("ring.events.csv")).unwrap(), samples);
 }
 
-/// Contacts that the scene alone asks for have no place on standard output, and stop nobody.
+/// Standard output leaves out contacts of the scene, and refuses those of an option.
 #[test]
 fn standard_output_has_samples_alone() {
     let folder = folder();

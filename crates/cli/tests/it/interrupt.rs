@@ -40,7 +40,7 @@ fn interrupted_it_ends_the_result_and_the_summary() {
     assert!(about["samples"].as_u64().unwrap() >= seen);
 }
 
-/// What is foretold of a long run stands in the answer of JSON, and nowhere if nobody wants to hear it.
+/// The note on a long run stands in the JSON answer, and nowhere with `--quiet`.
 #[test]
 fn notes_do_not_stand_beside_errors() {
     let folder = tempfile::tempdir().unwrap();
