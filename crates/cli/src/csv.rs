@@ -384,7 +384,7 @@ fn claim_table(path: &Path, existing: Existing, firsts: &[&str]) -> Result<Table
     Ok(claimed)
 }
 
-/// An empty file, or a table with one of these first columns.
+/// Tells an empty file, or a table with one of these first columns, from another.
 fn is_table(path: &Path, firsts: &[&str]) -> io::Result<bool> {
     let longest = firsts.iter().map(|first| first.len()).max().unwrap_or(0);
     let mut begin = Vec::new();

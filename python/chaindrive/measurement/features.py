@@ -121,9 +121,11 @@ def features_of(
             found.append(Feature(it.channel, name, blocks.estimate(name)))
         for order in it.orders:
             if not blocks.resolves(order):
-                message = f"order {order:g} of {it.shaft} has less than two samples a period in {it.channel}"
                 raise MeasurementError(
-                    message, it.channel, "narrower bounds of speeds, or a record of more samples"
+                    f"{it.channel}: order {order:g} of {it.shaft} has less than two samples a "
+                    "period",
+                    it.channel,
+                    "narrower bounds of speeds, or a record of more samples",
                 )
             found.append(Feature(it.channel, f"order {order:g}", blocks.order(order)[1]))
     return found

@@ -244,7 +244,7 @@ impl<'a> Terminal<'a> {
         }
     }
 
-    /// A program: sees no bar, and is told notes in the answer.
+    /// A reader of JSON: notes stand in the answer.
     fn listening(interrupted: &'a dyn Fn() -> bool) -> Self {
         Self {
             tells: false,
